@@ -140,7 +140,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	build/venv-blender/bin/python tests/long/stack_trials.py
 	build/venv/bin/python tests/window/run.py --sequences 500 --limit 7200 random_sequences
 	STIV_WINDOW_SNAPS=50 build/venv/bin/python tests/window/run.py snaps_as_blender
-	build/venv/bin/python tests/long/soak.py --drags 10000
+	build/venv/bin/python tests/long/soak.py --drags 10000 --seeds 1 2 3
 	build/venv-blender/bin/python tests/long/soak_in_blender.py --drags 10000
 	build/venv/bin/python tests/long/cluster_throughput.py
 	build/venv/bin/python tests/long/source_archive.py

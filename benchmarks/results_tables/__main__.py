@@ -25,6 +25,7 @@ TABLES: dict[str, Callable[[], str]] = {
         session_times.drags,
         session_times.growth,
         session_times.large_scenes,
+        session_times.long_sessions,
         edit_times.race,
         edit_times.trust_regions,
         session_times.cloth,

@@ -141,6 +141,19 @@ def large_scenes() -> str:
     return markdown(head, lines)
 
 
+def long_sessions() -> str:
+    """Growth of memory in long sessions, by the seed of their random drags."""
+    lines = [
+        [
+            str(row["seed"]),
+            f"{row['drags_between']:,}",
+            *(f"{row['memory'][0][kind] / 1e6:.1f} MB, {100 * row['growth'][kind]:+.2f} %" for kind in row["growth"]),
+        ]
+        for row in loaded("long_sessions")["rows"]
+    ]
+    return markdown(["seed", "drags", "resident", "without free pages", "allocated"], lines)
+
+
 def cloth() -> str:
     """Two stages of the dressing beside Blender's cloth simulation."""
     names = {"dressing, expand": "body grows", "dressing, shrink": "shirt shrinks"}

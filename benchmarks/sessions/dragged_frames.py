@@ -18,7 +18,7 @@ import numpy as np
 
 import stiv
 from benchmarks.sessions.frame_times import goal_matrix, name_of
-from stiv.blender.edit.culled_edit import begin_culled_steps
+from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scripts.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings
@@ -176,7 +176,7 @@ class _Dragging:
 
     def _begin(self) -> Steps[Any]:
         settings = self.settings_of(bpy.context.scene)
-        edit = yield from begin_culled_steps(bpy.context, settings, self.step.operator)
+        edit = yield from BlenderEdit.begin_steps(bpy.context, settings, self.step.operator)
         self._pivot = edit.controls.mean(axis=0)
         return edit
 

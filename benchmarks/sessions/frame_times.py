@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.edit.culled_edit import begin_culled_edit
+from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scripts.replaying import prepare, run_edit
 from stiv.blender.settings import EditSettings
@@ -81,7 +81,7 @@ def goal_matrix(step: EditStep, repetition: float, pivot: Floats) -> Floats:
 def _drag(step: EditStep, settings_of: Callable[[Any], EditSettings], clock: list[float]) -> Iterator[FrameTime]:
     if step.operator == "rotate":
         raise stiv.InputError("rotate: frame times are of scripts that move, scale and reshape")
-    edit = begin_culled_edit(bpy.context, settings_of(bpy.context.scene), step.operator)
+    edit = BlenderEdit.begin(bpy.context, settings_of(bpy.context.scene), step.operator)
     pivot = edit.controls.mean(axis=0)
     for repetition in range(1, step.repeat + 1):
         clock[0], begin = 0.0, time.perf_counter()

@@ -6,6 +6,7 @@
 #include "module.hpp"
 #include "stiv/acceptance/step_check.hpp"
 #include "stiv/acceptance/storage.hpp"
+#include "stiv/editing/obstacle.hpp"
 #include "stiv/error.hpp"
 
 namespace py = pybind11;
@@ -99,13 +100,15 @@ void bind_acceptance(py::module_& module) {
   module.def("stored_mesh", &stored_mesh, py::arg("mesh"), py::arg("frame"));
   module.def(
       "least_distance",
-      [](const SurfacePointer& of, const PositionsView& q, bool within) {
+      [](const SurfacePointer& of, const PositionsView& q, bool within,
+         const std::vector<std::shared_ptr<Obstacle>>& beside) {
         return tuple_of([&] {
           const py::gil_scoped_release unlocked;
-          return LeastDistance(of).find(q, within ? DistancePairs::all : DistancePairs::between_bodies);
+          const DistancePairs pairs = within ? DistancePairs::all : DistancePairs::between_bodies;
+          return least_distance(of, {beside.begin(), beside.end()}, q, pairs, Execution(1));
         }());
       },
-      surface, positions, py::arg("within"));
+      surface, positions, py::arg("within"), py::arg("obstacles"));
   py::class_<CachedIntersectionTest>(module, "IntersectionTest")
       .def(py::init<const SurfacePointer&, int>(), surface, threads)
       .def("find", &CachedIntersectionTest::find, positions, Release());

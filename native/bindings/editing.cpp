@@ -177,6 +177,12 @@ class Session : public std::enable_shared_from_this<Session> {
     session_.set_weights(std::move(weights), std::move(weight_axes));
   }
 
+  void end_drag() {
+    const InUse in_use(in_use_);
+    const py::gil_scoped_release unlocked;
+    session_.end_drag();
+  }
+
   Controls controls() {
     const InUse in_use(in_use_);
     return session_.controls();
@@ -358,6 +364,7 @@ void bind_editing(py::module_& module) {
       .def("set_weights", &Session::set_weights, py::arg("weights"), py::arg("weight_axes"))
       .def("is_step_free", &Session::is_step_free, py::arg("start"), py::arg("end"))
       .def("deviation_test", &Session::deviation_test)
+      .def("end_drag", &Session::end_drag)
       .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)

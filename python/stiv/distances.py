@@ -26,17 +26,21 @@ class LeastDistance:
     points: Floats  #: (2, 3) the closest point of each; of their boundaries if they intersect
 
 
-def least_distance(vertices: ArrayLike, surface: Surface | ArrayLike, *, within: bool = False) -> LeastDistance | None:
+def least_distance(
+    vertices: ArrayLike, surface: Surface | ArrayLike, *, within: bool = False, obstacles: Sequence[Obstacle] = ()
+) -> LeastDistance | None:
     """Return the least distance between triangles of different bodies at ``vertices``, (N, 3); None without a pair.
 
-    surface  triangles, (F, 3), or a Surface, without its ignored pairs of bodies
-    within   also test pairs within a body that share no vertex
+    surface    triangles, (F, 3), or a Surface, without its ignored pairs of bodies
+    within     also test pairs within a body that share no vertex
+    obstacles  bodies beside the surface; only their triangles near it are read, and numbered after those of the surface
 
     Raises InputError naming the row: a coordinate that is not finite, an index out of range, a wrong shape or dtype.
     """
     q = as_floats(vertices, "vertices", (None, 3))
     whole = as_surface(surface, len(q))
-    return least_distance_of(_native.least_distance(whole.native, q, within), whole)
+    values = _native.least_distance(whole.native, q, within, [each.native for each in obstacles])
+    return least_distance_of(values, whole, obstacles)
 
 
 def least_distance_of(

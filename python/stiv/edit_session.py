@@ -232,6 +232,10 @@ class EditSession:
         """Start :meth:`confirm` as a job."""
         return self._job(self._session.start_confirm())
 
+    def end_drag(self) -> None:
+        """Free what is prepared for further calls of a drag beside obstacles. They remain possible."""
+        self._session.end_drag()
+
     def _job(self, native: _native.Job) -> Job[EditResult]:
         return Job(native, self._result)
 

@@ -72,3 +72,52 @@ def test_a_session_measures_its_accepted_state_and_one_body_has_no_distance() ->
     assert stiv.least_distance(np.eye(3), [[0, 1, 2]]) is None
     with pytest.raises(stiv.InputError, match="row 1"):
         stiv.least_distance([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+
+
+def beside_sheet(surface: stiv.Surface, q: np.ndarray) -> tuple[stiv.Surface, stiv.Obstacle]:
+    """The ball and the ring as a surface, the sheet as an obstacle."""
+    owner = surface.vertex_body
+    count, of_sheet = int((owner < 2).sum()), owner[surface.triangles[:, 0]] == 2
+    bodies = [stiv.Body("ball"), stiv.Body("ring")]
+    ours = stiv.Surface(surface.triangles[~of_sheet], count, vertex_body=owner[:count], bodies=bodies, ignored=[(0, 1)])
+    return ours, stiv.Obstacle(q[count:], surface.triangles[of_sheet] - np.int32(count), "sheet")
+
+
+@pytest.mark.parametrize("height", [0.0, -3.0, -40.0])
+@pytest.mark.parametrize("seed", range(4))
+def test_obstacles_count_however_far_they_are(seed: int, height: float) -> None:
+    surface, q = scene(seed)
+    q = q + np.where(surface.vertex_body[:, None] == 2, (0, 0, height), 0.0)
+    ours, sheet = beside_sheet(surface, q)
+    count = len(q) - sheet.vertex_count
+    found = stiv.least_distance(q[:count], ours, obstacles=[sheet])
+    joint = stiv.Surface(
+        surface.triangles, len(q), vertex_body=surface.vertex_body, bodies=surface.bodies, ignored=[(0, 1)]
+    )
+    expected = stiv.least_distance(q, joint)
+    assert found is not None and expected is not None and expected.bodies[1] == "sheet"
+    assert (found.distance, found.bodies) == (expected.distance, expected.bodies)  # triangles may share the point
+    q_of = [q[surface.triangles[k]] for k in found.triangles]  # those of the sheet follow in the joint surface too
+    of_pair = stiv.least_distance(np.concatenate(q_of), [[0, 1, 2], [3, 4, 5]], within=True)
+    assert of_pair is not None and of_pair.distance == found.distance
+    session = stiv.EditSession(ours, stiv.identity(count), q[:count], obstacles=[sheet])
+    again = session.least_distance()
+    assert again is not None and again.distance == found.distance
+
+
+@pytest.mark.parametrize("corners", [(0, 0, 0), (0, 60, 60)])
+@pytest.mark.parametrize("seed", range(3))
+def test_points_and_edges_of_obstacles_count_as_thin_triangles_do(seed: int, corners: tuple[int, int, int]) -> None:
+    chance, ball = np.random.default_rng(seed), icosphere(2)
+    points = chance.normal(size=(60, 3)) * 4 + (9.0, 0.0, 0.0)
+    vertices = np.concatenate([points, points + chance.normal(size=(60, 3))])
+    degenerate = np.arange(60, dtype=np.int32)[:, None] + np.array(corners, np.int32)
+    thin, count = degenerate.copy(), len(vertices)
+    thin[:, 1:] += np.array([count, 2 * count], np.int32)
+    spread = np.concatenate([vertices, vertices + (1e-9, 0, 0), vertices + (0, 1e-9, 0)])
+    found, expected = (
+        stiv.least_distance(ball.vertices, ball.triangles(), obstacles=[stiv.Obstacle(*each)])
+        for each in ((vertices, degenerate), (spread, thin))
+    )
+    assert found is not None and expected is not None
+    assert found.distance == pytest.approx(expected.distance, abs=1e-8)

@@ -8,7 +8,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 
-from stiv.blender import EditSettings, begin_culled_edit  # noqa: E402
+from stiv.blender import BlenderEdit, EditSettings  # noqa: E402
 from stiv.blender.edit import kept_session  # noqa: E402
 from stiv.blender.scene import obstacle_choice, static_reading  # noqa: E402
 
@@ -20,7 +20,7 @@ def test_loading_a_file_frees_session_and_obstacles(monkeypatch: pytest.MonkeyPa
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_plane_add(location=(0.0, 0.0, -2.0))
     bpy.ops.mesh.primitive_cube_add()
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     edit.finish()
     del edit
     (known,) = static_reading._latest.values()

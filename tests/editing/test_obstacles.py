@@ -79,6 +79,17 @@ def test_a_drag_that_hands_over_its_first_states_stays_free_and_ends_alike() -> 
     assert mine.settle().energy == pytest.approx(theirs.settle().energy, rel=0.02)
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_drag_that_was_ended_continues_alike(threads: int) -> None:
+    """The session of the next box, which a drag prepares, is only made earlier than otherwise."""
+    mine, theirs = beside(threads=threads), beside(threads=threads)
+    for tick in range(1, 21):
+        goal = moved((0.3 * tick, 0.1 * tick, -0.03 * tick))
+        result, expected = mine.drag(goal), theirs.drag(goal)
+        mine.end_drag()
+        assert np.array_equal(result.controls, expected.controls) and result.status == expected.status
+
+
 def test_events_and_bodies_are_numbered_as_if_obstacles_followed_the_surface() -> None:
     session = beside()
     session.drag(moved((4.0, 3.0, 0.0)))

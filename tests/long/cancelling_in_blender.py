@@ -28,7 +28,7 @@ import building  # noqa: E402
 import numpy as np  # noqa: E402
 from ball_above_wall import ball_above_wall  # noqa: E402
 
-from stiv.blender import EditSettings, begin_culled_steps  # noqa: E402
+from stiv.blender import BlenderEdit, EditSettings  # noqa: E402
 from stiv.task import Task  # noqa: E402
 from stiv_addon.modal.drag_loop import DragCalls, DragLoop, Progress  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
@@ -64,7 +64,7 @@ def new_drag(threads: int) -> DragLoop:
     """A drag as the add-on starts it, toward SHIFT times a thousandth of the pointer's x."""
     settings = EditSettings(time_budget=DRAG_BUDGET, threads=threads)
     calls = DragCalls(
-        begin=lambda request: begin_culled_steps(bpy.context, settings, kind=request.kind),
+        begin=lambda request: BlenderEdit.begin_steps(bpy.context, settings, kind=request.kind),
         transform_of=lambda state: state.pointer.effective[0] / 1000,
         motion_of=lambda share, state: building.shift(*(share * SHIFT)),
         apply=no_typed_values,

@@ -21,7 +21,7 @@ import numpy as np  # noqa: E402
 from building import turn  # noqa: E402
 from test_posing import SETTINGS, among_boxes, count_intersections, pose_at_random, random_rotation  # noqa: E402
 
-from stiv.blender import Motion, begin_culled_edit, kept_twins  # noqa: E402
+from stiv.blender import BlenderEdit, Motion, kept_twins  # noqa: E402
 
 MOTIONS, BUDGET = 20, 0.038  # of a drag, and seconds of a solve
 
@@ -58,7 +58,7 @@ def drag_at_random(
     head, axis, angle = random_rotation(random, rig)
     message, found = "", 0
     with kept_twins():
-        edit = begin_culled_edit(bpy.context, SETTINGS, "rotate")
+        edit = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
         for number in range(1, MOTIONS + 1):
             matrix = turn(angle * number / MOTIONS, axis, head)
             result = edit.drag(Motion(matrix, head), time_budget=BUDGET)

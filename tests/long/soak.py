@@ -1,39 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ten thousand drags in the scenes of the ogre's dressing, with the exact test after each move.
 
-    python tests/long/soak.py [--drags 10000] [--moves 2] [--seed 1]
+    python tests/long/soak.py [--drags 10000] [--moves 2] [--seeds 1] [--json F]
 
 Each stage of the dressing has one session for the whole run. Blocks of random drags alternate with a constant
 block from the same start. The results of the constant block must be identical each time. Its processor time
-shows whether edits become slower, and the bytes allocated after it show whether memory leaks. The resident
-memory of the process is reported after the first pass over all stages, after the first tenth, and at the end:
-with the free pages that the allocator keeps, which grow with the largest edit so far, and after it returned
-them.
+shows whether edits become slower. The memory after it is a sample: what is resident, as in a session that nobody
+measures, what of it the allocator has not freed, and what is allocated.
+
+Growth is that of the median of nine samples. The first nine follow a warm-up of 1,080 drags, the last nine
+are --drags later. Each seed runs in a process of its own.
 
 The exit code is 1 if surfaces intersect, if a constant block differs, or if it becomes slower by 10 % or more.
-It is also 1 if the bytes allocated, or the resident ones without free pages, grow by 0.5 % or more after the
-first tenth. Needs /proc, malloc_trim and mallinfo2 (glibc 2.33).
+It is also 1 if resident or allocated memory grows by 0.5 % or more. Needs /proc and glibc 2.33.
 """
 
 import argparse
-import ctypes
-import gc
 import hashlib
+import json
 import os
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import numpy as np
+from process_memory import WINDOW, Memory, growth, medians, memory_after
 
 import stiv
 from blend_fixtures.scenes.sessions import dressing
 from blend_fixtures.scenes.sessions.session import Stage
 
 BLOCK = 60  # drags, over all stages in turn
+WARM_UP = 9  # samples before the first that count
 LONGEST = 0.05  # of a drag, in diagonals of the movable surface
 MOST_GROWTH, MOST_DRIFT = 0.005, 0.10
 
@@ -46,25 +51,6 @@ class Scene:
     session: stiv.EditSession
     start: np.ndarray
     diagonal: float
-
-
-@dataclass
-class Memory:
-    """Bytes after this many drags: resident, resident without the allocator's free pages, and allocated."""
-
-    drags: int
-    resident: int
-    used: int
-    allocated: int
-
-
-class AllocatorState(ctypes.Structure):
-    """The result of mallinfo2 for the main thread, in the order of malloc.h; the sessions use one thread."""
-
-    _fields_ = (
-        *((name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks")),
-        *((name, ctypes.c_size_t) for name in ("hblkhd", "usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")),
-    )
 
 
 @dataclass
@@ -132,7 +118,7 @@ def drag(scene: Scene, chance: np.random.Generator, moves: int, account: Account
     account.drags += 1
 
 
-def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> tuple[float, str]:
+def block(all_scenes: list[Scene], seed: list[int], moves: int, account: Account) -> tuple[float, str]:
     """One block from the start: processor seconds, and a hash of the result."""
     chance, begin = np.random.default_rng(seed), time.process_time()
     for scene in all_scenes:
@@ -143,32 +129,17 @@ def block(all_scenes: list[Scene], seed: int, moves: int, account: Account) -> t
     return time.process_time() - begin, ends.hexdigest()
 
 
-def memory_after(drags: int) -> Memory:
-    """Memory in use after a garbage collection, which frees the random generators."""
-    gc.collect()
-    allocator = ctypes.CDLL(None)
-    allocator.mallinfo2.restype = AllocatorState
-    state, with_free_pages = allocator.mallinfo2(), resident()
-    allocator.malloc_trim(0)
-    return Memory(drags, with_free_pages, resident(), state.uordblks + state.hblkhd)
-
-
-def resident() -> int:
-    """Resident bytes of the process."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGESIZE")
-
-
-def run(drags: int, seed: int, moves: int) -> Account:
-    """Run blocks up to this number of drags."""
+def run(seed: int, drags: int, moves: int) -> Account:
+    """Run blocks until the two windows of samples are this many drags apart."""
     account, all_scenes = Account(), scenes()
-    while account.drags < drags:
-        block(all_scenes, seed, moves, account)
-        seed += 1
-        seconds, ends = block(all_scenes, 0, moves, account)
+    samples = WARM_UP + WINDOW + max(-(-drags // (2 * BLOCK)), WINDOW)
+    for number in range(samples):
+        block(all_scenes, [seed, number], moves, account)
+        seconds, ends = block(all_scenes, [0], moves, account)
         account.repeated_seconds.append(seconds)
         account.repeated_results.add(ends)
         account.memory.append(memory_after(account.drags))
-        print(f"{report_line(account.memory[-1])}, {seconds:.2f} s", flush=True)
+        print(f"seed {seed}: {report_line(account.memory[-1])}, {seconds:.2f} s", flush=True)
     return account
 
 
@@ -178,48 +149,64 @@ def report_line(memory: Memory) -> str:
     return f"{memory.drags} drags: " + "{:.2f} MB resident, {:.2f} without free pages, {:.2f} allocated".format(*sizes)
 
 
-def growth_of_memory(account: Account) -> float:
-    """Growth from the first tenth to the end, for the kind of memory that grew more."""
-    settled, end = account.memory[settled_by(account)], account.memory[-1]
-    return max(end.used / settled.used, end.allocated / settled.allocated) - 1
-
-
-def settled_by(account: Account) -> int:
-    """The index of the measurement after the first tenth."""
-    return next(number for number, memory in enumerate(account.memory) if 10 * memory.drags >= account.drags)
-
-
 def drift_of_time(account: Account) -> float:
     """Minimum time of the constant block in the last fifth relative to the first; other programs only add time."""
     count = max(1, len(account.repeated_seconds) // 5)
     return min(account.repeated_seconds[-count:]) / min(account.repeated_seconds[:count]) - 1
 
 
-def arguments(description: str) -> argparse.Namespace:
-    """The command line of a soak test: `drags`, `seed` and `moves`."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--drags", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--moves", type=int, default=2, help="mouse moves a drag (default 2)")
-    return parser.parse_args()
+def figures(seed: int, account: Account) -> dict[str, Any]:
+    """The account of a seed as numbers."""
+    first, last = medians(account.memory[WARM_UP:][:WINDOW]), medians(account.memory[-WINDOW:])
+    return {
+        "seed": seed,
+        "drags": account.drags,
+        "drags_between": last.drags - first.drags,
+        "statuses": dict(sorted(account.statuses.items())),
+        "intersections": account.intersections,
+        "different_ends": len(account.repeated_results) - 1,
+        "drift_of_time": drift_of_time(account),
+        "memory": [vars(first), vars(last)],
+        "growth": {kind: growth(first, last, kind) for kind in ("resident", "used", "allocated")},
+        "largest": max(each.resident for each in account.memory),
+    }
+
+
+def measured(seed: int, drags: int, moves: int) -> dict[str, Any]:
+    """The figures of one seed."""
+    return figures(seed, run(seed, drags, moves))
+
+
+def is_steady(row: dict[str, Any]) -> bool:
+    """Did nothing intersect, differ, slow down or grow?"""
+    grows = max(row["growth"]["resident"], row["growth"]["allocated"]) >= MOST_GROWTH
+    return not (row["intersections"] or row["different_ends"] or grows or row["drift_of_time"] >= MOST_DRIFT)
+
+
+def parser(description: str) -> argparse.ArgumentParser:
+    """The command line of every soak test."""
+    found = argparse.ArgumentParser(description=description)
+    found.add_argument("--drags", type=int, default=10_000)
+    found.add_argument("--moves", type=int, default=2, help="mouse moves a drag (default 2)")
+    return found
 
 
 def main() -> int:
     """Drag, test and compare."""
-    chosen = arguments(__doc__.splitlines()[0])
-    account = run(chosen.drags, chosen.seed, chosen.moves)
-    growth, drift = growth_of_memory(account), drift_of_time(account)
-    counts = ", ".join(f"{count} {status}" for status, count in sorted(account.statuses.items()))
-    print(f"{account.drags} drags of {chosen.moves} moves ({counts}), {account.intersections} intersections")
-    print(
-        report_line(account.memory[0]),
-        report_line(account.memory[settled_by(account)]),
-        report_line(account.memory[-1]),
-        sep="\n",
-    )
-    print(f"memory {100 * growth:+.2f} %, time {100 * drift:+.1f} %, {len(account.repeated_results)} ends of one block")
-    same = len(account.repeated_results) == 1
-    return int(account.intersections > 0 or not same or growth >= MOST_GROWTH or drift >= MOST_DRIFT)
+    arguments = parser(__doc__.splitlines()[0])
+    arguments.add_argument("--seeds", type=int, nargs="+", default=[1])
+    arguments.add_argument("--json", type=Path, help="file to write the figures to")
+    chosen = arguments.parse_args()
+    count = min(len(chosen.seeds), os.cpu_count() or 1)
+    with ProcessPoolExecutor(count, get_context("spawn"), max_tasks_per_child=1) as processes:
+        rows = [*processes.map(partial(measured, drags=chosen.drags, moves=chosen.moves), chosen.seeds)]
+    for row in rows:
+        print(json.dumps(row))
+        print(*(report_line(Memory(**each)) for each in row["memory"]), sep="\n")
+        print(", ".join(f"{kind} {100 * value:+.2f} %" for kind, value in row["growth"].items()))
+    if chosen.json:
+        chosen.json.write_text(json.dumps({"rows": rows}, indent=2) + "\n", encoding="utf-8")
+    return int(not all(map(is_steady, rows)))
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ sys.path[:0] = [str(TESTS), str(TESTS / "blender")]
 import bpy  # noqa: E402
 import building  # noqa: E402
 import numpy as np  # noqa: E402
-from soak import BLOCK, MOST_GROWTH, arguments, resident  # noqa: E402
+from process_memory import resident  # noqa: E402
+from soak import BLOCK, MOST_GROWTH, parser  # noqa: E402
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene  # noqa: E402
 
@@ -80,7 +81,9 @@ def growth_of_memory(memory: list[int]) -> float:
 
 def main() -> int:
     """Drag, test and compare."""
-    chosen = arguments(__doc__.splitlines()[0])
+    arguments = parser(__doc__.splitlines()[0])
+    arguments.add_argument("--seed", type=int, default=1)
+    chosen = arguments.parse_args()
     make_scene()
     rejected, intersections, ends, memory, seed = 0, 0, set(), [], chosen.seed
     while len(memory) * 2 * BLOCK < chosen.drags:

@@ -225,7 +225,7 @@ def begin_edit(
     """
     settings = edit_settings(context.scene, request, time_budget)
     without_surface = stiv_blender.find_without_surface(context)
-    edit = yield from stiv_blender.begin_culled_steps(context, settings, kind=request.kind)
+    edit = yield from stiv_blender.BlenderEdit.begin_steps(context, settings, kind=request.kind)
     _note_unguarded(context, edit, without_surface)
     return edit
 

@@ -51,16 +51,18 @@ UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& t
 /// Collects the near elements of one obstacle after the other.
 class NearSceneBuilder {
  public:
-  NearSceneBuilder(const Surface& surface, const Eigen::AlignedBox3d& box, const Execution& execution)
+  NearSceneBuilder(const Surface& surface, const Eigen::AlignedBox3d& box, double distance, const Execution& execution)
       : definition_(surface.definition()),
         box_(box),
+        distance_(distance),
         execution_(execution),
         vertices_(surface.vertex_count()),
         triangles_(static_cast<Index>(surface.triangles().rows())),
         body_(static_cast<Index>(surface.bodies().size())) {}
 
   void add(const Obstacle& obstacle, const std::vector<Index>& named) {
-    const std::vector<Index> near = box_.isEmpty() ? std::vector<Index>() : obstacle.triangles_near(box_, execution_);
+    const std::vector<Index> near =
+        box_.isEmpty() ? std::vector<Index>() : obstacle.triangles_near(box_, execution_, distance_);
     if (!near.empty() || std::find(named.begin(), named.end(), body_) != named.end()) append(obstacle, near);
     triangles_ += static_cast<Index>(obstacle.triangles().rows());
     vertices_ += static_cast<Index>(obstacle.positions().rows());
@@ -105,6 +107,7 @@ class NearSceneBuilder {
 
   SurfaceDefinition definition_;
   const Eigen::AlignedBox3d& box_;
+  double distance_;
   const Execution& execution_;
   Index vertices_, triangles_;  // of the surface and the obstacles so far
   Index body_;                  // number of the next obstacle
@@ -115,8 +118,8 @@ class NearSceneBuilder {
 }  // namespace
 
 NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
-                     const std::vector<Index>& named, const Execution& execution) {
-  NearSceneBuilder builder(surface, box, execution);
+                     const std::vector<Index>& named, const Execution& execution, double distance) {
+  NearSceneBuilder builder(surface, box, distance, execution);
   for (const auto& obstacle : obstacles) builder.add(*obstacle, named);
   return builder.finish();
 }

@@ -20,10 +20,17 @@ struct NearScene {
   std::vector<Index> obstacle_vertices, obstacle_triangles;
   /// Bodies of obstacles, numbered in the same way, ascending.
   std::vector<Index> obstacle_bodies;
+
+  /// The number of a triangle of the surface, as if all obstacles followed.
+  Index whole_number(Index triangle) const {
+    const auto own = surface->triangles().rows() - static_cast<Eigen::Index>(obstacle_triangles.size());
+    return triangle < own ? triangle : obstacle_triangles[at(triangle - static_cast<Index>(own))];
+  }
 };
 
+/// @param distance from the box at which triangles are still near
 /// @param named bodies, numbered as if all obstacles followed the surface: an obstacle among them is always a body
 NearScene near_scene(const Surface& surface, const Obstacles& obstacles, const Eigen::AlignedBox3d& box,
-                     const std::vector<Index>& named, const Execution& execution);
+                     const std::vector<Index>& named, const Execution& execution, double distance = 0);
 
 }  // namespace stiv

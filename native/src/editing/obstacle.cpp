@@ -57,23 +57,42 @@ Index Obstacle::count_near(const Eigen::AlignedBox3d& box) const {
   return std::min(static_cast<Index>(near) * block_size, static_cast<Index>(triangles_.rows()));
 }
 
-std::vector<Index> Obstacle::triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution) const {
+std::vector<Index> Obstacle::triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution,
+                                            double distance) const {
+  const auto is_near = [&](const Eigen::AlignedBox3d& each) {
+    return each.intersects(box) || (distance > 0 && each.exteriorDistance(box) <= distance);
+  };
   const auto count = static_cast<Index>(blocks_.size());
   std::vector<std::vector<Index>> found(at(Execution::chunk_count(count, blocks_per_chunk)));
   execution.for_chunks(count, blocks_per_chunk, [&](Index begin, Index end, Index chunk) {
     for (Index block = begin; block < end; ++block) {
-      if (!blocks_[at(block)].intersects(box)) continue;
+      if (!is_near(blocks_[at(block)])) continue;
       const Index last = std::min((block + 1) * block_size, static_cast<Index>(triangles_.rows()));
       for (Index triangle = block * block_size; triangle < last; ++triangle) {
         Eigen::AlignedBox3d bounds;
         for (const Index corner : triangles_.row(triangle)) bounds.extend(Vector3(positions_.row(corner)));
-        if (bounds.intersects(box)) found[at(chunk)].push_back(triangle);
+        if (is_near(bounds)) found[at(chunk)].push_back(triangle);
       }
     }
   });
   std::vector<Index> triangles;
   for (const std::vector<Index>& some : found) triangles.insert(triangles.end(), some.begin(), some.end());
   return triangles;
+}
+
+std::optional<Vector3> Obstacle::corner_near(const Vector3& point, double distance) const {
+  std::optional<Vector3> nearest;
+  for (Index block = 0; block < static_cast<Index>(blocks_.size()); ++block) {
+    if (blocks_[at(block)].exteriorDistance(point) >= distance) continue;
+    const Index last = std::min((block + 1) * block_size, static_cast<Index>(triangles_.rows()));
+    for (Index triangle = block * block_size; triangle < last; ++triangle)
+      for (const Index corner : triangles_.row(triangle)) {
+        const Vector3 position = positions_.row(corner);
+        const double found = (position - point).norm();
+        if (found < distance) distance = found, nearest = position;
+      }
+  }
+  return nearest;
 }
 
 }  // namespace stiv

@@ -104,6 +104,8 @@ class ObstacleSession final : public SessionImplementation {
     options_.weight_axes = std::move(weight_axes);
   }
 
+  void end_drag() override { next_.reset(); }
+
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
     Eigen::AlignedBox3d bounds = moving_bounds(*surface_, start);
@@ -116,15 +118,12 @@ class ObstacleSession final : public SessionImplementation {
   std::shared_ptr<const DeviationTest> deviation_test() const override { return nullptr; }
 
   std::optional<NearestTriangles> least_distance(DistancePairs pairs) override {
-    const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, surface());
-    auto nearest = with_scene_numbers(near_->session->least_distance(pairs), near_->scene);
+    auto nearest = near_->session->least_distance(pairs);
+    if (nearest)
+      for (Index& triangle : nearest->triangles) triangle = near_->scene.whole_number(triangle);
     // A triangle outside of the box may be closer than the nearest one inside.
-    if (nearest && contains(box_, bounds, nearest->distance)) return nearest;
-    const Execution execution(options_.threads);
-    const Eigen::AlignedBox3d box = nearest && !bounds.isEmpty() ? grown(bounds, nearest->distance) : whole_space();
-    const NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
-    SceneRows rows(scene.obstacles);
-    return with_scene_numbers(LeastDistance(scene.surface).find(rows.with_rest(surface()), pairs), scene);
+    if (nearest && contains(box_, moving_bounds(*surface_, surface()), nearest->distance)) return nearest;
+    return stiv::least_distance(surface_, obstacles_, surface(), pairs, Execution(options_.threads));
   }
 
   const Controls& controls() const override { return near_->session->controls(); }
@@ -264,18 +263,6 @@ class ObstacleSession final : public SessionImplementation {
     return result;
   }
 
-  Index in_scene(Index triangle, const NearScene& scene) const {
-    const auto first = static_cast<Index>(surface_->triangles().rows());
-    return triangle < first ? triangle : scene.obstacle_triangles[at(triangle - first)];
-  }
-
-  std::optional<NearestTriangles> with_scene_numbers(std::optional<NearestTriangles> nearest,
-                                                     const NearScene& scene) const {
-    if (nearest)
-      for (Index& triangle : nearest->triangles) triangle = in_scene(triangle, scene);
-    return nearest;
-  }
-
   /// Calls work, which may find that controls intersect; then the error gets the numbers of all obstacles' triangles.
   template <class Work>
   auto with_scene_numbers(const NearScene& scene, const Controls& controls, const Work& work) const
@@ -290,7 +277,7 @@ class ObstacleSession final : public SessionImplementation {
       found.faces = std::move(error.pairs);
       const auto name_face = [&](Index face) { return describe_face(face, scene); };
       const std::string message = describe(*scene.surface, found, name_face);
-      for (auto& [a, b] : found.faces) a = in_scene(a, scene), b = in_scene(b, scene);
+      for (auto& [a, b] : found.faces) a = scene.whole_number(a), b = scene.whole_number(b);
       throw StartIntersectsError(message, std::move(found.faces));
     }
   }
@@ -298,7 +285,7 @@ class ObstacleSession final : public SessionImplementation {
   std::string describe_face(Index face, const NearScene& scene) const {
     const auto own = static_cast<Index>(surface_->triangles().rows());
     if (face < own) return surface_->describe_triangle(face);
-    Index number = in_scene(face, scene) - own;
+    Index number = scene.whole_number(face) - own;
     std::size_t k = 0;
     for (; number >= obstacles_[k]->triangles().rows(); ++k)
       number -= static_cast<Index>(obstacles_[k]->triangles().rows());

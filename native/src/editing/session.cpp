@@ -385,6 +385,8 @@ void EditSession::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix
   implementation_->set_weights(std::move(weights), std::move(weight_axes));
 }
 
+void EditSession::end_drag() { implementation_->end_drag(); }
+
 bool EditSession::is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
   return implementation_->is_step_free(start, end, execution);
 }

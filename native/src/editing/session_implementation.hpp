@@ -20,6 +20,7 @@ class SessionImplementation {
   virtual EditResult confirm(Execution& execution) = 0;
   virtual void restore(const Controls& controls, const Controls& goal) = 0;
   virtual void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) = 0;
+  virtual void end_drag() {}
   virtual bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) = 0;
   virtual std::shared_ptr<const DeviationTest> deviation_test() const = 0;
   virtual std::optional<NearestTriangles> least_distance(DistancePairs pairs) = 0;

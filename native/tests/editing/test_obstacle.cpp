@@ -42,6 +42,28 @@ TEST_CASE("obstacle: triangles near a box are those whose bounds touch it") {
   CHECK(obstacle.count_near({Vector3(5, 5, 5), Vector3(6, 6, 6)}) == 0);
 }
 
+TEST_CASE("obstacle: triangles within a distance of a box, and the closest corner, are those of all triangles") {
+  const Obstacle obstacle = sheet();
+  const Eigen::AlignedBox3d box(Vector3(0.2, 2.0, 0.5), Vector3(0.3, 2.5, 0.7));
+  for (const double distance : {0.4, 0.75, 1.3, 9.0}) {
+    std::vector<Index> expected;
+    for (Index triangle = 0; triangle < obstacle.triangles().rows(); ++triangle) {
+      Eigen::AlignedBox3d bounds;
+      for (const Index corner : obstacle.triangles().row(triangle))
+        bounds.extend(Vector3(obstacle.positions().row(corner)));
+      if (bounds.exteriorDistance(box) <= distance) expected.push_back(triangle);
+    }
+    CHECK(obstacle.triangles_near(box, Execution(2), distance) == expected);
+  }
+  for (const Vector3& point : {Vector3(0.21, -0.3, 0.4), Vector3(-7, 1, 2), Vector3(1.5, 1.5, 0)}) {
+    const double least = (obstacle.positions().rowwise() - point.transpose()).rowwise().norm().minCoeff();
+    const auto corner = obstacle.corner_near(point, least + 1);
+    REQUIRE(corner);
+    CHECK((*corner - point).norm() == doctest::Approx(least));
+    CHECK_FALSE(obstacle.corner_near(point, 0.999 * least));
+  }
+}
+
 TEST_CASE("obstacle: refusals name object and element") {
   Positions q = Positions::Zero(3, 3);
   Triangles triangles(2, 3);

@@ -8,7 +8,6 @@ from stiv.blender.controls.motion import Alignment, Influence, Motion
 from stiv.blender.controls.participants import may_have_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
-from stiv.blender.edit.culled_edit import begin_culled_edit, begin_culled_steps
 from stiv.blender.edit.drawable import triangles_of
 from stiv.blender.edit.ghost import Ghost, GhostSource
 from stiv.blender.edit.kept_session import free_kept_data
@@ -116,8 +115,6 @@ __all__ = [
     "WeightGroup",
     "WriteReport",
     "add_refined",
-    "begin_culled_edit",
-    "begin_culled_steps",
     "check_scene",
     "choose_guard",
     "compare",

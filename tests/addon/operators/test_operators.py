@@ -105,9 +105,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"Exclusions": SimpleNamespace(from_json=str)}
     plain |= {"read_selected_lattice_points": read_selected_lattice_points}
     plain |= {"unguarded_text": lambda *_: "", "find_without_surface": lambda context: ()}
-    stand_in = SimpleNamespace(
-        begin_culled_steps=RecordingEdit.begin_steps, SceneChangedError=KeyError, run_steps=run, **plain
-    )
+    stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
     stand_in.is_cut_by_topology = lambda result: False
     stand_in.free_kept_data = lambda: None
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)

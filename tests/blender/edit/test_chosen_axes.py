@@ -10,7 +10,7 @@ import pytest
 from building import add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, select, shift, stretch, turn
 from mathutils import Matrix
 
-from stiv.blender import BlenderEdit, EditSettings, FreeDirections, Motion, begin_culled_edit, check_scene
+from stiv.blender import BlenderEdit, EditSettings, FreeDirections, Motion, check_scene
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 
 AXES = [(True, False, False), (False, True, False), (False, False, True), (True, True, False), (False, True, True)]
@@ -282,7 +282,7 @@ def test_a_drag_among_distant_obstacles_rotates_about_its_pivot() -> None:
     for k in range(60):
         add_grid(f"Far {k}", 60, 0.5, (0, 6 + 2 * k, 0), rotation_euler=(1.2, 0, 0))
     select(bar)
-    edit = begin_culled_edit(bpy.context, EditSettings(), "rotate")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "rotate")
     start = as_matrix(bar.matrix_world)
     for degrees in range(10, 130, 20):
         edit.drag(Motion(turn(np.radians(degrees), "Z"), np.zeros(3)))

@@ -10,9 +10,7 @@ from building import add_cube, add_modifier, cube_above_floor, edit_mode, shift
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene
 from stiv.blender.edit import kept_session
-from stiv.blender.edit.culled_edit import begin_culled_steps
 from stiv.blender.edit.sessions import deformation_of
-from stiv.task import run
 
 
 def pressed(depth: float) -> BlenderEdit:
@@ -52,7 +50,7 @@ def test_consecutive_drags_share_a_session() -> None:
     cage()
     sessions = []
     for depth in (0.3, 1.0, 0.2):
-        edit = run(begin_culled_steps(bpy.context, EditSettings(time_budget=0.5), kind="move"))
+        edit = BlenderEdit.begin(bpy.context, EditSettings(time_budget=0.5), kind="move")
         sessions.append(edit._solver.session)
         for part in (0.5, 1.0):
             edit.drag(shift(z=-part * depth), time_budget=0.5)

@@ -15,7 +15,7 @@ from test_posing import SHOULDER, apply, intersecting
 
 from blend_fixtures.characters import make_character, select_bones
 from stiv import InputError
-from stiv.blender import AcceptedScene, EditSettings, Handles, Motion, begin_culled_edit, guard_result
+from stiv.blender import AcceptedScene, BlenderEdit, EditSettings, Handles, Motion, guard_result
 
 GOAL = 20.0  # degrees by which the arm is lowered
 
@@ -171,7 +171,7 @@ def test_a_drag_and_the_guard_let_clothes_yield(rig: Any) -> None:
     select_bones(rig, "Arm.L")
     before = evaluated(cloth)
     settings = EditSettings(separation=0.01, responders="unselected", deformations={"Cloth": "vertices"})
-    edit = begin_culled_edit(bpy.context, settings, "rotate")
+    edit = BlenderEdit.begin(bpy.context, settings, "rotate")
     for number in range(1, 41):
         edit.drag(Motion(turn(np.radians(GOAL * number / 40), "Y", SHOULDER), np.array(SHOULDER)), time_budget=0.04)
     edit.settle()

@@ -3,10 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "stiv/acceptance/least_distance.hpp"
 #include "stiv/execution.hpp"
+#include "stiv/surface.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -28,8 +31,11 @@ class Obstacle {
 
   /// Upper bound of the number of triangles near a box; reads only the boxes of blocks.
   Index count_near(const Eigen::AlignedBox3d& box) const;
-  /// Triangles whose bounds touch a box, ascending.
-  std::vector<Index> triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution) const;
+  /// Triangles whose bounds are within a distance of a box, ascending; at 0, those that touch it.
+  std::vector<Index> triangles_near(const Eigen::AlignedBox3d& box, const Execution& execution,
+                                    double distance = 0) const;
+  /// The corner of triangles that is closest to a point, if one is closer than a distance.
+  std::optional<Vector3> corner_near(const Vector3& point, double distance) const;
 
  private:
   std::string name_;
@@ -40,5 +46,12 @@ class Obstacle {
 
 /// The obstacles of a session.
 using Obstacles = std::vector<std::shared_ptr<const Obstacle>>;
+
+/// The closest pair of triangles of a surface at positions q, (N, 3), and of obstacles beside it. Only obstacles'
+/// triangles near the surface are read. Triangles are numbered as if all obstacles followed the surface.
+/// @throws InputError as Surface::check_positions
+std::optional<NearestTriangles> least_distance(const std::shared_ptr<const Surface>& surface,
+                                               const Obstacles& obstacles, const PositionsView& q, DistancePairs pairs,
+                                               const Execution& execution);
 
 }  // namespace stiv

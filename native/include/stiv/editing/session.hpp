@@ -93,6 +93,9 @@ class EditSession {
   /// `restore`. @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes = {});
 
+  /// Frees what is prepared for further calls of a drag. They remain possible.
+  void end_drag();
+
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
   /// Like stiv::is_step_free, but with the trees of the session. For sessions without excluded pairs.
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution);

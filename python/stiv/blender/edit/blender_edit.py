@@ -27,8 +27,9 @@ from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import intersection_notes
-from stiv.blender.scene.near_assembly import near_assembly
+from stiv.blender.scene.obstacle_choice import find_obstacles
 from stiv.blender.scene.stack_twin import kept_twins
+from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
@@ -62,6 +63,7 @@ class BlenderEdit:
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
         """Read the scene for an edit of this kind ("move", "rotate", "scale"); changes nothing.
 
+        In large scenes, objects that certainly stay as they are become obstacles beside the surface.
         Raises InputError naming object, element and ways out, StartIntersectsError if the start intersects.
         """
         return run(cls.begin_steps(context, settings, kind))
@@ -70,7 +72,11 @@ class BlenderEdit:
     def begin_steps(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> Steps[BlenderEdit]:
         """Steps of `begin`; the first reads the scene."""
         check_kind(kind)
-        return cls.begin_with_steps(context, settings, kind, find_participants(context, settings))
+        participants = find_participants(context, settings)
+        obstacles = find_obstacles(context, {each.reference.name for each in participants}, settings)
+        if not obstacles:
+            forget_static_meshes()
+        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles)
 
     @classmethod
     def begin_with(
@@ -159,22 +165,19 @@ class BlenderEdit:
                 return self.surface
 
     def least_distance(self) -> stiv.LeastDistance | None:
-        """Least distance between objects in the accepted state, without distant obstacles; None without a session.
+        """Least distance between objects in the accepted state; None without a session.
 
         While a job uses the session, that of the state that was taken last.
         """
         if not self._solver.has_session:
             return None
         try:
-            if not self.assembly.obstacles:
-                return self._solver.session.least_distance()
-            surface = self._solver.session.surface
+            return self._solver.session.least_distance()
         except stiv.InputError:
             if self._taken is None:
                 raise
-            surface = self._taken.surface
-        near = near_assembly(self.assembly, surface)
-        return stiv.least_distance(near.extended(surface), near.assembly.surface)
+        obstacles = [each.obstacle for each in self.assembly.obstacles]
+        return stiv.least_distance(self._taken.surface, self.assembly.surface, obstacles=obstacles)
 
     @property
     def assembly(self) -> Assembly:

@@ -64,6 +64,7 @@ _kept: tuple[SessionInputs, stiv.EditSession, stiv.Deformation] | None = None
 def keep_session(inputs: SessionInputs, session: stiv.EditSession, deformation: stiv.Deformation) -> None:
     """Keep a session that nothing else uses any more, and its deformation. They replace those that were kept."""
     global _kept
+    session.end_drag()
     _kept = inputs, session, deformation
 
 

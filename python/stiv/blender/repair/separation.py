@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -46,7 +47,7 @@ def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationRe
 def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[SeparationReport]:
     """Steps of `separate`; the last one writes."""
     free = replace(settings, interference=False, object_response="rigid", responders="selected")
-    edit = yield from BlenderEdit.begin_steps(context, free, "move")
+    edit = yield from BlenderEdit.begin_with_steps(context, free, "move", find_participants(context, free))
     moving = edit.moving
     surfaces = _against_others(edit.assembly, moving, settings)
     pairs = find_face_pairs(surfaces, surfaces.positions, settings.threads)

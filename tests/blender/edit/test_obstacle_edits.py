@@ -18,12 +18,10 @@ from stiv.blender import (
     BlenderEdit,
     EditSettings,
     SceneChangedError,
-    begin_culled_edit,
     check_scene,
     contact_region,
 )
 from stiv.blender.controls.participants import find_participants
-from stiv.blender.edit.culled_edit import names_of
 from stiv.blender.scene import obstacle_choice
 from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.verify.scene_check import nearest_pair
@@ -67,13 +65,13 @@ def along_x(distance: float) -> np.ndarray:
 
 
 def obstacles(settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008 (frozen)
-    participants = names_of(find_participants(bpy.context, settings))
+    participants = {each.reference.name for each in find_participants(bpy.context, settings)}
     return set(obstacle_choice.find_obstacles(bpy.context, participants, settings))
 
 
 def test_independent_objects_are_obstacles_beside_the_surface(row: Any) -> None:
     assert obstacles() == {"Wall", "Neighbour"}
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     assert names(edit) == ["Box"] and {each.owner.name for each in edit.assembly.obstacles} == {"Wall", "Neighbour"}
     assert edit.drag(along_x(0.5)).status == "reached" and edit.write().passed
     whole_summary = whole(EditSettings())().summary
@@ -86,7 +84,7 @@ def test_the_separation_holds_toward_obstacles(row: Any) -> None:
     roles = {"Neighbour": "ignored"}
     for separation in (1.0, 4.0, 9.0):
         settings = EditSettings(separation=separation, roles=roles)
-        edit = begin_culled_edit(bpy.context, settings, "move")
+        edit = BlenderEdit.begin(bpy.context, settings, "move")
         for step in range(1, 21):
             edit.drag(along_x(0.5 * step))
             assert edit.write().passed
@@ -101,7 +99,7 @@ def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(
     row: Any, steps: int, settings: EditSettings
 ) -> None:
     found = []
-    for begin in (lambda: begin_culled_edit(bpy.context, settings, "move"), whole(settings)):
+    for begin in (lambda: BlenderEdit.begin(bpy.context, settings, "move"), whole(settings)):
         edit = begin()
         for step in range(1, steps + 1):
             edit.drag(along_x(14.0 * step / steps))
@@ -120,7 +118,7 @@ def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(
 
 
 def whole(settings: EditSettings) -> Callable[[], BlenderEdit]:
-    return lambda: BlenderEdit.begin(bpy.context, settings, "move")
+    return lambda: BlenderEdit.begin_with(bpy.context, settings, "move", find_participants(bpy.context, settings))
 
 
 def names(edit: Any) -> list[str]:
@@ -130,7 +128,7 @@ def names(edit: Any) -> list[str]:
 def test_everything_is_restored_after_long_drags(row: Any) -> None:
     before = [np.array(ob.matrix_world) for ob in bpy.data.objects]
     for distance in (0.5, 3.0, 14.0):
-        edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+        edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
         edit.drag(along_x(distance))
         edit.write()
         edit.restore()
@@ -139,7 +137,7 @@ def test_everything_is_restored_after_long_drags(row: Any) -> None:
 
 
 def test_starts_are_the_same_with_and_without_obstacles(row: Any) -> None:
-    near, all_of_it = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
+    near, all_of_it = BlenderEdit.begin(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert near.start_digest == all_of_it.start_digest
     row.location.x = 0.25
     bpy.context.view_layer.update()
@@ -147,7 +145,7 @@ def test_starts_are_the_same_with_and_without_obstacles(row: Any) -> None:
 
 
 def test_collisions_off_and_on_again_far_away(row: Any) -> None:
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     edit.write()
     edit.set_interference(False)
@@ -179,7 +177,7 @@ def test_what_depends_on_others_belongs_to_the_surface(row: Any, tie: str) -> No
 
 def test_small_scenes_have_no_obstacles(row: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(obstacle_choice, "MIN_FACES", 1000)
-    assert begin_culled_edit(bpy.context, EditSettings(), "move").assembly.obstacles == ()
+    assert BlenderEdit.begin(bpy.context, EditSettings(), "move").assembly.obstacles == ()
 
 
 @pytest.fixture
@@ -201,7 +199,7 @@ def moved(edit: Any, name: str) -> np.ndarray:
 
 
 def test_states_are_tested_against_the_near_part_of_an_obstacle(ground: Any) -> None:
-    edit, entire = begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()
+    edit, entire = BlenderEdit.begin(bpy.context, EditSettings(), "move"), whole(EditSettings())()
     assert edit.start_digest == entire.start_digest
     near = near_assembly(edit.assembly, edit.surface).assembly
     part, all_of_it = near.meshes[1], entire.assembly.meshes[names(entire).index("Ground")]
@@ -216,7 +214,7 @@ def test_states_are_tested_against_the_near_part_of_an_obstacle(ground: Any) -> 
 
 @pytest.mark.parametrize("steps", [1, 8, 50])
 def test_a_drag_along_a_large_obstacle_touches_all_of_it(ground: Any, steps: int) -> None:
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     matrix = np.eye(4)
     for step in range(1, steps + 1):
         matrix[0, 3], matrix[2, 3] = 30.0 * step / steps, -1.2
@@ -235,7 +233,7 @@ def below(distance: float, x: float = 0.0) -> np.ndarray:
 
 def test_contacts_and_distances_are_those_of_a_surface_of_everything(ground: Any) -> None:
     shown = []
-    for edit in (begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())()):
+    for edit in (BlenderEdit.begin(bpy.context, EditSettings(), "move"), whole(EditSettings())()):
         result = edit.drag(below(0.8))
         result = result if len(result.events) else edit.drag(below(0.9))
         region, distance = contact_region(edit.assembly, result), edit.least_distance()
@@ -249,11 +247,32 @@ def test_contacts_and_distances_are_those_of_a_surface_of_everything(ground: Any
     assert near.distance == pytest.approx(far.distance, abs=1e-3)
 
 
+@pytest.mark.parametrize("is_solving", [False, True])
+def test_the_least_distance_counts_obstacles_far_away(
+    row: Any, is_solving: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The wall begins at 10, and the box is one large. The session is in use while a job solves."""
+    bpy.data.objects.remove(bpy.data.objects["Neighbour"])
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    if is_solving:
+        monkeypatch.setattr(stiv.EditSession, "least_distance", in_use)
+    for x in (0.0, 3.0, 9.0, -30.0):
+        edit.drag(along_x(x))
+        edit.take_state()
+        found = edit.least_distance()
+        assert found is not None and set(found.bodies) == {"Box", "Wall"}
+        assert found.distance == pytest.approx(9.5 - x, abs=1e-5)
+
+
+def in_use(_session: stiv.EditSession) -> None:
+    raise stiv.InputError("the session is in use")
+
+
 def test_a_start_inside_of_an_obstacle_names_both_objects_and_faces(ground: Any) -> None:
     ground.location.z = 0.2
     bpy.context.view_layer.update()
     found = []
-    for begin in (lambda: begin_culled_edit(bpy.context, EditSettings(), "move"), whole(EditSettings())):
+    for begin in (lambda: BlenderEdit.begin(bpy.context, EditSettings(), "move"), whole(EditSettings())):
         with pytest.raises(stiv.StartIntersectsError) as refused:
             begin()
         found.append(refused.value.objects)
@@ -270,7 +289,7 @@ def test_loose_elements_of_obstacles_collide(row: Any, kind: str) -> None:
     bpy.context.collection.objects.link(bpy.data.objects.new("Wire", data))
     select(row)
     assert "Wire" in obstacles()
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     for depth in (0.3, 0.45, 0.55):
         result = edit.drag(below(depth))
         assert edit.write().passed and check_scene(bpy.context).pairs == ()
@@ -279,7 +298,7 @@ def test_loose_elements_of_obstacles_collide(row: Any, kind: str) -> None:
 
 def test_a_state_that_blender_shows_elsewhere_fails_beside_the_session(ground: Any) -> None:
     """As the add-on writes, while a job uses the session: the ground is moved into the ball behind the edit's back."""
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     edit.drag(below(0.3))
     taken = edit.take_state()
     assert taken is not None
@@ -294,17 +313,17 @@ def test_a_state_that_blender_shows_elsewhere_fails_beside_the_session(ground: A
 
 def test_a_second_drag_reads_nothing_again_and_uses_the_same_session(ground: Any) -> None:
     edit_mode(ground)
-    first = begin_culled_edit(bpy.context, EditSettings(), "move")
+    first = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     (obstacle,), session = first.assembly.obstacles, first._solver.session
     first.drag(below(0.3))
     assert first.write().passed
     first.finish()
-    second = begin_culled_edit(bpy.context, EditSettings(), "move")
+    second = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     assert second.assembly.obstacles[0] is obstacle and second._solver.session is session
     second.finish()
     bpy.data.objects["Ground"].data.vertices[0].co.z += 0.01
     bpy.data.objects["Ground"].data.update()
-    third = begin_culled_edit(bpy.context, EditSettings(), "move")
+    third = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     assert third.assembly.obstacles[0] is not obstacle and third._solver.session is not session
 
 
@@ -322,7 +341,7 @@ def test_what_only_the_viewport_shows_alike_belongs_to_a_guarded_surface(ground:
 
 
 def test_an_obstacle_that_changes_its_size_during_a_drag_ends_it(ground: Any) -> None:
-    edit = begin_culled_edit(bpy.context, EditSettings(), "move")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
     edit.drag(along_x(0.5))
     bpy.data.objects["Ground"].modifiers.new("More", "SUBSURF").levels = 1
     bpy.context.view_layer.update()
