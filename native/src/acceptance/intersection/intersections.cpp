@@ -111,6 +111,11 @@ class IntersectionTest::Implementation {
         stars_(corners_within_tested_bodies(*surface_, triangles_.all_corners()), surface_->vertex_count()),
         bodies_(pairs_of_bodies(*surface_)) {}
 
+  void set_resting(Index count) {
+    resting_ = count;
+    placed_.reset();
+  }
+
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
   IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
     return find(loose_edges_, q, execution);
@@ -137,7 +142,8 @@ class IntersectionTest::Implementation {
   void check_positions(const PositionsView& q, const Execution& execution) const {
     constexpr Index chunk_size = 8192;
     if (q.rows() != surface_->vertex_count()) surface_->check_positions(q);
-    execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
+    const Index count = static_cast<Index>(q.rows()) - (placed_ ? resting_ : 0);
+    execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
       for (Index vertex = begin; vertex < end; ++vertex) surface_->check_position(vertex, q.row(vertex));
     });
   }
@@ -148,13 +154,16 @@ class IntersectionTest::Implementation {
               const Execution& execution) {
     check_positions(q, execution);
     std::optional<PlacedVertices> placed = std::exchange(placed_, std::nullopt);  // this may be cancelled
-    if (!placed) placed.emplace(*surface_);
+    if (!placed) placed.emplace(*surface_, resting_);
     placed->update(q, moved, execution);
     for (Primitives* kind : {&triangles_, &loose_edges_, &loose_vertices_})
       kind->note_changes(placed->changed_bodies());
     for (Primitives* kind : kinds) kind->update(placed->boxes(), execution);
-    stars_.find_free(*placed, moved, free_stars_, execution);
-    triangles_.leave_out_neighbours(free_stars_, placed->changed_bodies(), execution);
+    // Proofs mostly turn out as before. If this was cancelled in between, all bodies have changed.
+    const bool are_left_out = std::exchange(free_stars_are_left_out_, false);
+    const bool differ = stars_.find_free(*placed, moved, free_stars_, execution);
+    if (differ || !are_left_out) triangles_.leave_out_neighbours(free_stars_, placed->changed_bodies(), execution);
+    free_stars_are_left_out_ = true;
     placed_ = std::move(placed);
   }
 
@@ -164,6 +173,8 @@ class IntersectionTest::Implementation {
   GroupRelations bodies_;
   std::optional<PlacedVertices> placed_;   ///< of the last update, unless it was cancelled
   std::vector<unsigned char> free_stars_;  ///< of the last update
+  bool free_stars_are_left_out_ = false;   ///< in searches of triangles
+  Index resting_ = 0;                      ///< vertices
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
@@ -171,6 +182,8 @@ IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface)
 IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
+
+void IntersectionTest::set_resting(Index count) { implementation_->set_resting(count); }
 
 IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;

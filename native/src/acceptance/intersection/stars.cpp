@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <span>
 
 #include "acceptance/intersection/star_proof.hpp"
@@ -81,26 +82,35 @@ Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_co
   std::stable_sort(stars_.begin(), stars_.end(), [this](Index a, Index b) { return shape(a) < shape(b); });
 }
 
-void Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
+bool Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
                       std::vector<unsigned char>& free, const Execution& execution) const {
   constexpr Index chunk_size = 4096;
   const PackedPoints& points = placed.points();
   free.resize(points.size(), 0);
   const auto has_moved = [&](Index vertex) { return moved[at(vertex)] != 0; };
+  std::atomic<bool> any_changed{false};
   execution.for_chunks(static_cast<Index>(stars_.size()), chunk_size, [&](Index begin, Index end, Index) {
     StarBlock block;
+    bool changed = false;
+    const auto set = [&](Index vertex, unsigned char value) {
+      unsigned char& known = free[at(vertex)];
+      changed = changed || known != value;
+      known = value;
+    };
     const auto prove = [&] {
       if (block.count == 0) return;
       const auto proven = prove_free(block, points);
-      for (std::size_t k = 0; k < block.count; ++k) free[at(block.vertices[k])] = proven[k];
+      for (std::size_t k = 0; k < block.count; ++k) set(block.vertices[k], proven[k]);
       block.count = 0;
     };
     for (std::size_t k = at(begin); k < at(end); ++k) {
       const Index vertex = stars_[k];
       if (!placed.is_in_changed_body(vertex)) continue;
-      free[at(vertex)] = 0;
       const std::span<const Index> around = link(vertex);
-      if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) continue;
+      if (!moved.empty() && !has_moved(vertex) && std::none_of(around.begin(), around.end(), has_moved)) {
+        set(vertex, 0);
+        continue;
+      }
       const auto [triangles, closed] = shape(vertex);
       if (block.count == StarBlock::capacity || triangles != block.triangles || closed != block.closed) prove();
       block.triangles = triangles;
@@ -110,7 +120,9 @@ void Stars::find_free(const PlacedVertices& placed, const std::vector<unsigned c
       ++block.count;
     }
     prove();
+    if (changed) any_changed.store(true, std::memory_order_relaxed);
   });
+  return any_changed;
 }
 
 std::pair<std::size_t, bool> Stars::shape(Index vertex) const {

@@ -21,9 +21,9 @@ class Stars {
   Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
 
   /// Sets 1 for each vertex whose star is proven free; 0 is inconclusive. Vertices of bodies without changes keep what
-  /// they have.
+  /// they have. Returns whether any vertex got another value.
   /// @param moved as in IntersectionTest::is_free; stars without a moved vertex are skipped and get 0
-  void find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
+  bool find_free(const PlacedVertices& placed, const std::vector<unsigned char>& moved,
                  std::vector<unsigned char>& free, const Execution& execution) const;
 
  private:
