@@ -44,6 +44,7 @@ CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const Edi
       detector(surface, {.broad_phase = context.options().broad_phase}),
       cache(detector, static_cast<Index>(context.obstacles().rows())),
       intersections(surface, {.lists_near_pairs = has_deviation_tests(context)}) {
+  intersections.set_resting(static_cast<Index>(context.obstacles().rows()));
   const EditOptions& options = context.options();
   if (options.narrow_phase != NarrowPhase::conservative)
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
@@ -83,6 +84,12 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
   guard_->detector.prepare(context_.centred(surface, centred_start_, execution), execution);
 }
 
+std::pair<const Positions&, const Positions&> CollisionQueries::at_events(const Events& events, const Positions& from,
+                                                                          const Positions& to) {
+  if (context_.options().volumes != VolumeKind::relative) return {start_.with_rest(from), end_.with_rest(to)};
+  return {start_.with_rest_at(events, from), end_.with_rest_at(events, to)};
+}
+
 /// Guards the watched pairs of bodies that are apart in the accepted surface, and no others.
 void CollisionQueries::guard_pairs_apart_at(const Positions& accepted, Execution& execution) {
   if (!overlap_ || (guarded_at_.rows() == accepted.rows() && guarded_at_ == accepted)) return;
@@ -113,9 +120,13 @@ Positions CollisionQueries::rows_with_obstacles(const Positions& q, std::span<co
 }
 
 /// Of all vertices.
-std::vector<unsigned char> CollisionQueries::moved(const PositionsView& from, const PositionsView& to) const {
-  std::vector<unsigned char> moved = moved_vertices(from, to);
-  moved.resize(at(context_.surface().vertex_count()), 0);
+std::vector<unsigned char> CollisionQueries::moved(const PositionsView& from, const PositionsView& to,
+                                                   const Execution& execution) const {
+  constexpr Index rows_per_chunk = 4096;
+  std::vector<unsigned char> moved(at(context_.surface().vertex_count()), 0);
+  execution.for_chunks(static_cast<Index>(from.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index vertex = begin; vertex < end; ++vertex) moved[at(vertex)] = from.row(vertex) != to.row(vertex);
+  });
   return moved;
 }
 
@@ -189,7 +200,7 @@ double CollisionQueries::free_fraction(const Positions& from, const Positions& t
 
 bool CollisionQueries::passes_static_test(const Positions& from, const Positions& to, Execution& execution) {
   const Positions& end = end_.with_rest(to);
-  if (excluded_.empty()) return guard_->intersections.is_free(end, moved(from, to), execution);
+  if (excluded_.empty()) return guard_->intersections.is_free(end, moved(from, to, execution), execution);
   StaticPairs found = guard_->intersections.find_all(end, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
@@ -213,7 +224,7 @@ bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsVi
 bool CollisionQueries::is_end_free(const PositionsView& from, const PositionsView& to, Execution& execution) {
   if (const auto near = deviation_test(from))
     if (const std::optional<bool> is_free = near->is_free(to, execution)) return *is_free;
-  return guard_->intersections.is_free(end_.with_rest(to), moved(from, to), execution);
+  return guard_->intersections.is_free(end_.with_rest(to), moved(from, to, execution), execution);
 }
 
 std::shared_ptr<const DeviationTest> CollisionQueries::deviation_test(const PositionsView& accepted) const {

@@ -39,10 +39,10 @@ class CollisionQueries {
   /// Prunes cached candidates that the step does not bring close. Called when rounds toward another goal begin.
   void prune_cache(const Positions& from, const Positions& to, Execution& execution);
   void clear_cache() { guard_->cache.clear(); }
-  /// A step with the obstacles. Valid until the next query.
-  std::pair<const Positions&, const Positions&> with_obstacles(const Positions& from, const Positions& to) {
-    return {start_.with_rest(from), end_.with_rest(to)};
-  }
+  /// A step with the obstacles, valid until the next query. With obstacles, other rows than those of vertices of the
+  /// events are undefined, unless volumes need them.
+  std::pair<const Positions&, const Positions&> at_events(const Events& events, const Positions& from,
+                                                          const Positions& to);
 
   /// Does `find` without events prove the step clear?
   bool rounds_prove_clearance() const;
@@ -81,7 +81,8 @@ class CollisionQueries {
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;
 
   Positions rows_with_obstacles(const Positions& q, std::span<const Index> vertices) const;
-  std::vector<unsigned char> moved(const PositionsView& from, const PositionsView& to) const;
+  std::vector<unsigned char> moved(const PositionsView& from, const PositionsView& to,
+                                   const Execution& execution) const;
 
   const EditContext& context_;
   SceneRows start_, end_, centred_start_, centred_end_;  // of the last query

@@ -68,7 +68,9 @@ class EditContext {
   double longest_displacement(const Positions& from, const Positions& to) const {
     return moving_part_.longest_displacement(from, to);
   }
-  Eigen::VectorXd region_areas(const Positions& q) const { return moving_part_.region_areas(q); }
+  const Eigen::VectorXd& region_areas(const Positions& q, const Execution& execution) const {
+    return moving_part_.region_areas(q, execution);
+  }
   bool is_empty() const { return deformation_->control_count() == 0 || surface_->vertex_count() == 0; }
 
   /// @param name of the argument: "controls" or "goal"

@@ -22,6 +22,12 @@ void MovingPart::Range::include(Index element) {
   end = element + 1;
 }
 
+void MovingPart::Range::cover(Index element) {
+  if (end == 0) first = element;
+  first = std::min(first, element);
+  end = std::max(end, element + 1);
+}
+
 MovingPart::MovingPart(std::shared_ptr<const Surface> surface, const Positions& obstacles)
     : surface_(std::move(surface)), obstacles_(obstacles) {
   const Index rows = surface_->vertex_count() - static_cast<Index>(obstacles_.rows()),
@@ -30,6 +36,8 @@ MovingPart::MovingPart(std::shared_ptr<const Surface> surface, const Positions& 
     if (!surface_->is_fixed(vertex)) rows_.include(vertex);
   for (Index triangle = 0; triangle < triangles; ++triangle)
     if (!surface_->is_fixed(surface_->triangles()(triangle, 0))) triangles_.include(triangle);
+  for (Index triangle = triangles_.first; triangle < triangles_.end; ++triangle)
+    for (const Index corner : surface_->triangles().row(triangle)) corners_.cover(corner);
   rows_.first -= rows_.first % rows_of_sums;
   rows_.end = std::min(rows, (rows_.end + rows_of_sums - 1) / rows_of_sums * rows_of_sums);
 }
@@ -44,18 +52,46 @@ double MovingPart::longest_displacement(const Positions& from, const Positions& 
   return step.rowwise().norm().maxCoeff();
 }
 
-Eigen::VectorXd MovingPart::region_areas(const Positions& q) const {
-  if (areas_of_rest_.size() == 0) {
-    areas_of_rest_ = Eigen::VectorXd::Zero(surface_->vertex_count());
-    SceneRows rows(obstacles_);
-    const Positions& whole = rows.with_rest(q);
-    surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_);
-    surface_->add_vertex_areas(whole, triangles_.end, static_cast<Index>(surface_->triangles().rows()), areas_of_rest_);
+const Eigen::VectorXd& MovingPart::region_areas(const Positions& q, const Execution& execution) const {
+  const bool is_first = areas_of_rest_.size() == 0;
+  if (is_first) compute_rest(q);
+  if (is_first || !rest_is_complete_)
+    areas_ = areas_of_rest_;
+  else
+    areas_.segment(corners_.first, corners_.count()) = areas_of_rest_.segment(corners_.first, corners_.count());
+  add_moving_areas(q, execution);
+  const auto moving = areas_.segment(corners_.first, corners_.count());
+  if (!rest_is_complete_ || !(moving.array() > 0).all()) {
+    substitute_missing_areas(areas_);
+    rest_is_complete_ = false;  // the next call begins with what is missing
   }
-  Eigen::VectorXd areas = areas_of_rest_;
-  surface_->add_vertex_areas(q, triangles_.first, triangles_.end, areas);
-  substitute_missing_areas(areas);
-  return areas;
+  return areas_;
+}
+
+/// Surface::add_vertex_areas of the triangles that may move. Terms are computed on all threads, and added in order.
+void MovingPart::add_moving_areas(const Positions& q, const Execution& execution) const {
+  constexpr Index triangles_per_chunk = 4096;
+  const Triangles& triangles = surface_->triangles();
+  Eigen::VectorXd thirds(triangles_.count());
+  execution.for_chunks(triangles_.count(), triangles_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) {
+      const auto corner = [&](Index c) -> Vector3 { return q.row(triangles(triangles_.first + k, c)); };
+      thirds[k] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
+    }
+  });
+  for (Index triangle = triangles_.first; triangle < triangles_.end; ++triangle)
+    for (const Index corner : triangles.row(triangle)) areas_[corner] += thirds[triangle - triangles_.first];
+}
+
+/// Areas that the triangles of the other part give to all vertices.
+void MovingPart::compute_rest(const Positions& q) const {
+  areas_of_rest_ = Eigen::VectorXd::Zero(surface_->vertex_count());
+  SceneRows rows(obstacles_);
+  const Positions& whole = rows.with_rest(q);
+  surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_);
+  surface_->add_vertex_areas(whole, triangles_.end, static_cast<Index>(surface_->triangles().rows()), areas_of_rest_);
+  rest_is_complete_ = (areas_of_rest_.head(corners_.first).array() > 0).all() &&
+                      (areas_of_rest_.tail(areas_of_rest_.size() - corners_.end).array() > 0).all();
 }
 
 }  // namespace stiv

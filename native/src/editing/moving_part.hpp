@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "stiv/execution.hpp"
 #include "stiv/surface.hpp"
 
 namespace stiv {
@@ -17,8 +18,8 @@ class MovingPart {
   /// 1/2 |a - b|^2. (mathematics.md, Eq. 4)
   double energy(const Positions& a, const Positions& b) const;
   double longest_displacement(const Positions& from, const Positions& to) const;
-  /// region_areas of all vertices; those of the other part are computed once.
-  Eigen::VectorXd region_areas(const Positions& q) const;
+  /// region_areas of all vertices, until the next call; those of the other part are computed once.
+  const Eigen::VectorXd& region_areas(const Positions& q, const Execution& execution) const;
 
  private:
   /// Elements [first, end).
@@ -26,13 +27,21 @@ class MovingPart {
     Index first = 0, end = 0;
 
     Index count() const { return end - first; }
+    /// Elements come in ascending order.
     void include(Index element);
+    /// In any order.
+    void cover(Index element);
   };
+
+  void compute_rest(const Positions& q) const;
+  void add_moving_areas(const Positions& q, const Execution& execution) const;
 
   std::shared_ptr<const Surface> surface_;
   const Positions& obstacles_;
   Range rows_, triangles_;
-  mutable Eigen::VectorXd areas_of_rest_;
+  Range corners_;  ///< of those triangles
+  mutable Eigen::VectorXd areas_of_rest_, areas_;
+  mutable bool rest_is_complete_ = false;  ///< no vertex outside of `corners_` lacks an area
 };
 
 }  // namespace stiv

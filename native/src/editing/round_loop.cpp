@@ -102,9 +102,10 @@ bool RoundLoop::constrain() {
   ConstraintSet& constraints = progress_.constraints;
   ++call_.execution.counters.rounds;
   if (constraints.size() > max_constraints(call_.context) / 4) constraints.drop_inactive();
-  if (areas_.size() == 0) areas_ = call_.context.region_areas(call_.accepted.surface);
-  const auto [start, end] = call_.queries.with_obstacles(call_.accepted.surface, outcome_.candidate.surface);
-  RoundVolumes volumes = volumes_of_round(call_.context, {*progress_.events, start, end, areas_}, progress_.round,
+  if (areas_ == nullptr) areas_ = &call_.context.region_areas(call_.accepted.surface, call_.execution);
+  const auto [start, end] =
+      call_.queries.at_events(*progress_.events, call_.accepted.surface, outcome_.candidate.surface);
+  RoundVolumes volumes = volumes_of_round(call_.context, {*progress_.events, start, end, *areas_}, progress_.round,
                                           constraints.size(), call_.execution);
   outcome_.patches = volumes.patches;
   std::vector<ControlConstraint> rows = linearised(std::move(volumes.stivs));

@@ -50,7 +50,7 @@ class RoundLoop {
   const EditOptions& options_;
   const StatePredicate& is_diverging_;
   RoundProgress& progress_;
-  Eigen::VectorXd areas_;  // of the accepted surface, once there are events
+  const Eigen::VectorXd* areas_ = nullptr;  // of the accepted surface, once there are events
   RoundOutcome outcome_;
 };
 

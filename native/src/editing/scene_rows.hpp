@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "stiv/detection/event.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -15,6 +16,17 @@ class SceneRows {
   /// All rows, until the next call; those given if no others follow.
   const Positions& with_rest(const Positions& q) { return rest_.rows() == 0 ? q : copied(q); }
   PositionsView with_rest(const PositionsView& q) { return rest_.rows() == 0 ? q : PositionsView(copied(q)); }
+
+  /// The same, but of the surface only the rows of vertices of events; the others are undefined.
+  const Positions& with_rest_at(const Events& events, const Positions& q) {
+    const auto count = static_cast<Index>(q.rows());
+    if (rest_.rows() == 0 || 4 * events.size() > at(count)) return with_rest(q);  // then all are copied sooner
+    Positions& rows = with_room_for(count);
+    for (const Event& event : events)
+      for (const Index vertex : event.vertices)
+        if (vertex < count) rows.row(vertex) = q.row(vertex);
+    return rows;
+  }
 
   /// All rows, of which the first `count` are to be written.
   Positions& with_room_for(Index count) {

@@ -44,6 +44,9 @@ class IntersectionTest {
   IntersectionTest(IntersectionTest&&) noexcept;
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
 
+  /// Promises that the last vertices, this many, have the same positions in all calls. Pairs among them are left out.
+  void set_resting(Index count);
+
   /// All pairs of triangles (smaller index first) that intersect.
   IndexPairs find(const PositionsView& q, Execution& execution);
 
@@ -58,8 +61,7 @@ class IntersectionTest {
 
   /// True if nothing intersects; stops at the first intersection.
   /// @param moved (N) nonzero for vertices that differ from a state known to be free; only pairs with a moved vertex
-  /// are
-  ///        tested. Empty: all
+  /// are tested. Empty: all
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution);
 
   /// The test of surfaces that deviate from q by rounding, for options that list near pairs. Null unless q was the last

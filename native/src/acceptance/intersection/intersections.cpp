@@ -124,6 +124,11 @@ class IntersectionTest::Implementation {
     if (options.lists_near_pairs) near_.emplace(surface_, stars_);
   }
 
+  void set_resting(Index count) {
+    resting_ = count;
+    placed_.reset();
+  }
+
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
   IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
     return find(loose_edges_, q, execution);
@@ -201,7 +206,8 @@ class IntersectionTest::Implementation {
   void check_positions(const PositionsView& q, const Execution& execution) const {
     constexpr Index chunk_size = 8192;
     if (q.rows() != surface_->vertex_count()) surface_->check_positions(q);
-    execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
+    const Index count = static_cast<Index>(q.rows()) - (placed_ ? resting_ : 0);
+    execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index) {
       for (Index vertex = begin; vertex < end; ++vertex) surface_->check_position(vertex, q.row(vertex));
     });
   }
@@ -211,13 +217,18 @@ class IntersectionTest::Implementation {
   void update(const Kinds& kinds, const PositionsView& q, const std::vector<unsigned char>& moved,
               const Execution& execution) {
     std::optional<PlacedVertices> placed = std::exchange(placed_, std::nullopt);  // this may be cancelled
-    if (!placed) placed.emplace(*surface_);
+    if (!placed) placed.emplace(*surface_, resting_);
     placed->update(q, moved, near_ ? near_->margin() : 0, execution);
     for (Primitives* kind : {&triangles_, &loose_edges_, &loose_vertices_})
       kind->note_changes(placed->changed_bodies());
     for (Primitives* kind : kinds) kind->update(placed->boxes(), execution);
+    // Proofs mostly turn out as before. If this was cancelled in between, all bodies have changed.
+    const bool are_left_out = std::exchange(free_stars_are_left_out_, false);
+    proofs_before_ = proofs_;
     stars_->find_free(*placed, moved, near_ ? near_->reach() : 0, proofs_, execution);
-    triangles_.leave_out_neighbours(proofs_, placed->changed_bodies(), execution);
+    if (!are_left_out || proofs_ != proofs_before_)
+      triangles_.leave_out_neighbours(proofs_, placed->changed_bodies(), execution);
+    free_stars_are_left_out_ = true;
     placed_ = std::move(placed);
   }
 
@@ -225,9 +236,11 @@ class IntersectionTest::Implementation {
   Primitives triangles_, loose_edges_, loose_vertices_;
   std::shared_ptr<const Stars> stars_;
   GroupRelations bodies_;
-  std::optional<PlacedVertices> placed_;  ///< of the last update, unless it was cancelled
-  std::vector<unsigned char> proofs_;     ///< of stars, of the last update
-  std::optional<NearPairList> near_;      ///< if it is wanted
+  std::optional<PlacedVertices> placed_;               ///< of the last update, unless it was cancelled
+  std::vector<unsigned char> proofs_, proofs_before_;  ///< of stars, of the last two updates
+  bool free_stars_are_left_out_ = false;               ///< in searches of triangles
+  std::optional<NearPairList> near_;                   ///< if it is wanted
+  Index resting_ = 0;                                  ///< vertices
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface, IntersectionTestOptions options)
@@ -235,6 +248,8 @@ IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface, Inter
 IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
+
+void IntersectionTest::set_resting(Index count) { implementation_->set_resting(count); }
 
 IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;

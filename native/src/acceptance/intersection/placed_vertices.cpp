@@ -26,16 +26,17 @@ void PlacedVertices::place(const PositionsView& q, Index vertex, bool active) {
 
 void PlacedVertices::update(const PositionsView& q, const std::vector<unsigned char>& moved, double margin,
                             const Execution& execution) {
-  const auto count = static_cast<Index>(q.rows());
+  const auto rows = static_cast<Index>(q.rows()), moving = rows - resting_;
   const bool is_first = points_.empty() || margin != margin_;
   margin_ = margin;
-  points_.resize(at(count));
-  boxes_.resize(at(count));
+  points_.resize(at(rows));
+  boxes_.resize(at(rows));
+  const Index count = is_first ? rows : moving;
   std::vector<std::vector<Index>> changed(at(Execution::chunk_count(count, chunk_size)));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
     std::vector<Index>& bodies = changed[at(chunk)];
     for (Index vertex = begin; vertex < end; ++vertex) {
-      const bool active = moved.empty() || moved[at(vertex)] != 0;
+      const bool active = vertex < moving && (moved.empty() || moved[at(vertex)] != 0);
       if (!is_first && is_placed(q, vertex, active)) continue;
       place(q, vertex, active);
       const Index body = surface_->body_of(vertex);

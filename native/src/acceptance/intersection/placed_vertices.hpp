@@ -13,7 +13,8 @@ namespace stiv {
 /// Positions of all vertices and their boxes, kept from test to test: large bodies at rest cost only a comparison.
 class PlacedVertices {
  public:
-  explicit PlacedVertices(const Surface& surface) : surface_(&surface) {}
+  /// @param resting as in IntersectionTest::set_resting
+  explicit PlacedVertices(const Surface& surface, Index resting = 0) : surface_(&surface), resting_(resting) {}
 
   /// @param moved as in IntersectionTest::is_free
   /// @param margin of the boxes on each side
@@ -21,7 +22,7 @@ class PlacedVertices {
               const Execution& execution);
 
   const PackedPoints& points() const { return points_; }
-  /// A box is active if its vertex is marked in `moved`.
+  /// A box is active if its vertex is marked in `moved`, and not one of those that rest.
   const std::vector<PackedBox>& boxes() const { return boxes_; }
   /// 1 for each body with a vertex that the last update changed.
   const std::vector<unsigned char>& changed_bodies() const { return changed_bodies_; }
@@ -33,6 +34,7 @@ class PlacedVertices {
   bool is_placed(const PositionsView& q, Index vertex, bool active) const;
 
   const Surface* surface_;
+  Index resting_;
   PackedPoints points_;
   std::vector<PackedBox> boxes_;
   double margin_ = 0;  // of the boxes

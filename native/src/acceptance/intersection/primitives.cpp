@@ -58,9 +58,10 @@ void Primitives::update(const std::vector<PackedBox>& vertices, const Execution&
       for (Index k = begin; k < end; ++k) boxes[at(k)] = box_of(corners(k), vertices).bounds();
     });
     tree_.emplace(centres_of(boxes), bodies_, CornerRows(), execution);
+    static_assert(sizeof(corners_[0]) == 3 * sizeof(Index));
+    block_corners_ = tree_->block_corners({corners_.empty() ? nullptr : corners_[0].data(), 3});
   }
-  const auto box_of_primitive = [&](Index primitive) { return box_of(corners(primitive), vertices); };
-  tree_->refit_groups(changed_, box_of_primitive, execution);
+  tree_->refit_groups_corners(changed_, block_corners_, vertices, execution);
   std::fill(changed_.begin(), changed_.end(), 0);
 }
 

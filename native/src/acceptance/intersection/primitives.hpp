@@ -45,6 +45,7 @@ class Primitives {
   std::vector<Index> bodies_;
   std::vector<unsigned char> changed_;  // bodies, since the last update
   std::vector<Index> names_;            // of corners in the tree, three for each primitive
+  std::vector<Index> block_corners_;    // vertices in the tree's order
   std::optional<Bvh> tree_;
 };
 

@@ -136,19 +136,26 @@ void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char
                       const Execution& execution) {
   corner_size_ = corners.size;
   incidence_.reset();
-  const std::size_t size = corners.size;
-  corners_.resize(order_.size() * size);
+  corners_.resize(order_.size() * static_cast<std::size_t>(corners.size));
   execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
-    for (Index block = begin; block < end; ++block) {
-      if (changed[levels_[0].groups[block]] == 0) continue;
-      for (Index place = block * width; place < (block + 1) * width; ++place) {
-        const Index primitive = order_[place];
-        for (std::size_t k = 0; k < size; ++k)
-          corners_[(block * size + k) * width + place % width] =
-              primitive >= 0 ? corners.rows[primitive * size + k] : -1;
-      }
-    }
+    for (Index block = begin; block < end; ++block)
+      if (changed[levels_[0].groups[block]] != 0) list_corners(corners, block, corners_);
   });
+}
+
+std::vector<Index> Bvh::block_corners(const CornerRows& rows) const {
+  std::vector<Index> corners(order_.size() * static_cast<std::size_t>(rows.size));
+  for (Index block = 0; block < static_cast<Index>(order_.size() / width); ++block) list_corners(rows, block, corners);
+  return corners;
+}
+
+void Bvh::list_corners(const CornerRows& rows, Index block, std::vector<Index>& corners) const {
+  const std::size_t size = rows.size;
+  for (Index place = block * width; place < (block + 1) * width; ++place) {
+    const Index primitive = order_[place];
+    for (std::size_t k = 0; k < size; ++k)
+      corners[(block * size + k) * width + place % width] = primitive >= 0 ? rows.rows[primitive * size + k] : -1;
+  }
 }
 
 void Bvh::refit(const std::vector<Bounds>& boxes, const std::vector<unsigned char>& active) {
@@ -158,25 +165,10 @@ void Bvh::refit(const std::vector<Bounds>& boxes, const std::vector<unsigned cha
   refit(box_of, Execution(1));
 }
 
-void Bvh::summarise(std::size_t level, std::size_t node) {
-  const std::vector<PackedBox>& below = levels_[level - 1].boxes;
-  PackedBox all = PackedBox::empty();
-  for (std::size_t lane = 0; lane < width; ++lane) {
-    const std::size_t child = node * width + lane;
-    const PackedBox box = child < below.size() ? below[child] : PackedBox::empty();
-    for (std::size_t k = 0; k < 7; ++k) levels_[level].nodes[node].planes[k][lane] = box.values[k];
-    all.include(box);
-  }
-  levels_[level].boxes[node] = all;
-}
-
 void Bvh::summarise_all(const Execution& execution) {
   for (std::size_t level = 1; level < levels_.size(); ++level)
     execution.for_chunks(static_cast<Index>(levels_[level].nodes.size()), chunk_size,
-                         [&](Index begin, Index end, Index) {
-                           for (Index node = begin; node < end; ++node)
-                             summarise(level, static_cast<std::size_t>(node));
-                         });
+                         [&](Index begin, Index end, Index) { summarise(level, nullptr, begin, end); });
 }
 
 void Bvh::prepare_refit_some_corners(Index vertex_count) {
@@ -222,23 +214,29 @@ void Bvh::summarise_touched() {
     parents_.clear();
     for (const Index node : touched_)
       if (parents_.empty() || parents_.back() != node / width) parents_.push_back(node / width);
-    for (const Index node : parents_) summarise(level, static_cast<std::size_t>(node));
+    summarise(level, parents_.data(), 0, static_cast<Index>(parents_.size()));
     std::swap(touched_, parents_);
   }
 }
 
 void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution) {
   if (levels_.empty()) return;
-  execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size,
-                       [&](Index begin, Index end, Index) { refit_blocks(nullptr, begin, end, vertices.data()); });
+  execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size, [&](Index begin, Index end, Index) {
+    refit_blocks(nullptr, begin, end, corners_, vertices.data());
+  });
   summarise_all(execution);
 }
 
 void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
                                const Execution& execution) {
+  refit_groups_corners(changed, corners_, vertices, execution);
+}
+
+void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<Index>& block_corners,
+                               const std::vector<PackedBox>& vertices, const Execution& execution) {
   find_touched(changed);
   execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    refit_blocks(touched_.data(), begin, end, vertices.data());
+    refit_blocks(touched_.data(), begin, end, block_corners, vertices.data());
   });
   summarise_touched(execution);
 }
@@ -247,7 +245,7 @@ void Bvh::refit_some_corners(std::span<const Index> changed, const std::vector<P
   if (levels_.empty()) return;
   prepare_refit_some_corners(static_cast<Index>(vertices.size()));
   find_touched(changed);
-  refit_blocks(touched_.data(), 0, static_cast<Index>(touched_.size()), vertices.data());
+  refit_blocks(touched_.data(), 0, static_cast<Index>(touched_.size()), corners_, vertices.data());
   summarise_touched();
 }
 

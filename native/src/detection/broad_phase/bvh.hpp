@@ -87,18 +87,19 @@ class Bvh {
   template <class BoxOf>
   void refit(const BoxOf& box_of, const Execution& execution);
 
-  /// The same for the primitives of groups that are marked in `changed`.
-  template <class BoxOf>
-  void refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution);
-
   /// The same where a primitive's box is the union of those of its corners (at least one).
   void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
+  /// For the primitives of groups that are marked in `changed`.
   void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
                             const Execution& execution);
   /// The same for the primitives with a corner among `changed`. The cost does not depend on the others.
   void refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices);
   /// Allocates what the first refit of some corners would allocate.
   void prepare_refit_some_corners(Index vertex_count);
+  /// For a tree whose corners are names: the vertices of each block, (blocks, size, width), -1: none.
+  std::vector<Index> block_corners(const CornerRows& rows) const;
+  void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<Index>& block_corners,
+                            const std::vector<PackedBox>& vertices, const Execution& execution);
 
   /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
   void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
@@ -141,13 +142,16 @@ class Bvh {
  private:
   void set_child(Level& level, std::size_t child, const PackedBox& box);
   void finish_node(Level& level, std::size_t node);
-  void summarise(std::size_t level, std::size_t node);
+  /// The nodes number `begin` to `end` of a list, or of all (nullptr), from the boxes of the level below.
+  void summarise(std::size_t level, const Index* nodes, Index begin, Index end);
   void reserve_levels(const std::vector<Index>& groups);
 
+  void list_corners(const CornerRows& rows, Index block, std::vector<Index>& corners) const;
   template <class BoxOf>
   void refit_block(std::size_t block, const BoxOf& box_of);
   /// Blocks number `begin` to `end` of a list, or of all (nullptr).
-  void refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices);
+  void refit_blocks(const Index* blocks, Index begin, Index end, const std::vector<Index>& corners,
+                    const PackedBox* vertices);
   void find_touched(std::span<const Index> vertices);
   void find_touched(const std::vector<unsigned char>& changed_groups);
   void summarise_touched();
@@ -189,15 +193,6 @@ void Bvh::refit(const BoxOf& box_of, const Execution& execution) {
     for (Index block = begin; block < end; ++block) refit_block(static_cast<std::size_t>(block), box_of);
   });
   summarise_all(execution);
-}
-
-template <class BoxOf>
-void Bvh::refit_groups(const std::vector<unsigned char>& changed, const BoxOf& box_of, const Execution& execution) {
-  find_touched(changed);
-  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    for (Index k = begin; k < end; ++k) refit_block(static_cast<std::size_t>(touched_[k]), box_of);
-  });
-  summarise_touched(execution);
 }
 
 }  // namespace stiv

@@ -113,14 +113,35 @@ void refit_blocks(Index size, const Index* blocks, Index begin, Index end, const
     refit_blocks_of_size<3>(blocks, begin, end, corners, vertices, level);
 }
 
+void summarise_nodes(const std::vector<PackedBox>& below, const Index* nodes, Index begin, Index end,
+                     Bvh::Level& level) {
+  const PackedBox absent = PackedBox::empty();
+  for (Index k = begin; k < end; ++k) {
+    const auto node = static_cast<std::size_t>(nodes == nullptr ? k : nodes[k]);
+    Children children;
+    for (std::size_t lane = 0; lane < Bvh::width; ++lane) {
+      const std::size_t child = node * Bvh::width + lane;
+      children.set(lane, child < below.size() ? below.data()[child] : absent);
+    }
+    children.store(level.nodes.data()[node], level.boxes.data()[node]);
+  }
+}
+
 }  // namespace stiv::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace stiv {
 
-void Bvh::refit_blocks(const Index* blocks, Index begin, Index end, const PackedBox* vertices) {
-  STIV_FOR_VECTOR_TARGET(refit_blocks)(corner_size_, blocks, begin, end, corners_.data(), vertices, levels_[0]);
+void Bvh::refit_blocks(const Index* blocks, Index begin, Index end, const std::vector<Index>& corners,
+                       const PackedBox* vertices) {
+  if (begin == end) return;
+  const auto size = static_cast<Index>(corners.size() / order_.size());
+  STIV_FOR_VECTOR_TARGET(refit_blocks)(size, blocks, begin, end, corners.data(), vertices, levels_[0]);
+}
+
+void Bvh::summarise(std::size_t level, const Index* nodes, Index begin, Index end) {
+  STIV_FOR_VECTOR_TARGET(summarise_nodes)(levels_[level - 1].boxes, nodes, begin, end, levels_[level]);
 }
 
 }  // namespace stiv

@@ -104,6 +104,32 @@ TEST_CASE("intersections: bodies at rest stay unchanged while others move, test 
   }
 }
 
+TEST_CASE("intersections: vertices that rest are not looked at again, while stars beside them open and fold") {
+  std::mt19937 random(13);
+  Assembly scene = linked_tori(12, 8, 0);
+  const auto moving = static_cast<Index>(scene.q.rows());
+  scene.add_soup(60, 0.3, Mobility::fixed, random);
+  const auto surface = scene.surface();
+  IntersectionTest test(surface);
+  test.set_resting(static_cast<Index>(scene.q.rows()) - moving);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::size_t most = 0, least = 1000000;
+  for (const double size : {0.0, 0.3, 0.3, 0.0, 0.02, 0.3, 0.0}) {
+    Positions q = scene.q;
+    for (Index vertex = 0; vertex < moving; ++vertex)
+      for (Index axis = 0; axis < 3; ++axis) q(vertex, axis) += size * unit(random);
+    Execution cancelled(1), execution(2);
+    cancelled.cancel_when([] { return true; });
+    if (size == 0.02) CHECK_THROWS_AS(test.find(q, cancelled), Interrupted);
+    const IndexPairs expected = brute_force(*surface, q);
+    CHECK(test.find(q, execution) == expected);
+    CHECK(is_free(test, q) == expected.empty());
+    most = std::max(most, expected.size());
+    least = std::min(least, expected.size());
+  }
+  CHECK(most > least + 20);
+}
+
 TEST_CASE("intersections: linked rings are free until one is pulled") {
   for (const double scale : {1e-7, 1.0, 1e7}) {
     const Assembly linked = linked_tori(40, 20, 0), pulled = linked_tori(40, 20, 1.5);

@@ -136,8 +136,13 @@ TEST_CASE("bvh: groups that did not change keep their boxes") {
   std::vector<Index> groups;
   for (Index k = 0; k < 500; ++k) groups.push_back(k % 3);
   Bvh tree(boxes, groups);
-  const auto box_of = [&](Index k) { return PackedBox::of(moved[static_cast<std::size_t>(k)], true); };
-  tree.refit_groups({0, 1, 0}, box_of, Execution(2));
+  std::vector<PackedBox> vertices;
+  std::vector<Index> corners;
+  for (std::size_t k = 0; k < 500; ++k) {
+    vertices.push_back(PackedBox::of(moved[k], true));
+    corners.push_back(static_cast<Index>(k));
+  }
+  tree.refit_groups_corners({0, 1, 0}, tree.block_corners({corners.data(), 1}), vertices, Execution(2));
   for (std::size_t k = 1; k < 500; k += 3) boxes[k] = moved[k];
   CHECK(sorted(Bvh::overlapping_pairs(tree, Execution(1)), true) == expected_pairs(boxes, boxes, all));
 }
