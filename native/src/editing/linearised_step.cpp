@@ -42,7 +42,7 @@ std::vector<ControlConstraint> contacts_toward(EditCall& call, const Controls& p
   const Positions ahead = accepted.surface + deformation.push_forward(accepted.controls, p - accepted.controls);
   const std::optional<Events> events = call.queries.find(accepted.surface, ahead, PairLimit::respected, call.execution);
   if (!events || events->empty()) return {};
-  const auto [start, end] = call.queries.with_obstacles(accepted.surface, ahead);
+  const auto [start, end] = call.queries.at_events(*events, accepted.surface, ahead);
   std::vector<Stiv> volumes;
   for (const Region& region : contact_regions(context.surface(), *events, start, end))
     volumes.push_back(linearised((*events)[at(region.event)], start, deformation.vertex_count()));
