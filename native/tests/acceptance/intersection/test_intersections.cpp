@@ -170,7 +170,7 @@ TEST_CASE("intersections: only pairs with a moved vertex are tested") {
   CHECK(is_free(test, scene.q, std::vector<unsigned char>(180, 0)));
   for (Index face = 0; face < 60; ++face) {
     std::vector<unsigned char> moved(180, 0);
-    moved[static_cast<std::size_t>(3 * face + 1)] = 1;
+    moved[3 * static_cast<std::size_t>(face) + 1] = 1;
     const bool meets = std::any_of(pairs.begin(), pairs.end(),
                                    [&](const auto& pair) { return pair.first == face || pair.second == face; });
     CHECK(is_free(test, scene.q, moved) == !meets);
