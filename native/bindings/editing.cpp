@@ -221,24 +221,6 @@ class Session : public std::enable_shared_from_this<Session> {
 
 Obstacles as_obstacles(const std::vector<std::shared_ptr<Obstacle>>& given) { return {given.begin(), given.end()}; }
 
-void bind_obstacle(py::module_& module) {
-  py::class_<Obstacle, std::shared_ptr<Obstacle>>(module, "Obstacle")
-      .def(py::init([](std::string name, Positions positions, Triangles triangles) {
-             const py::gil_scoped_release unlocked;
-             return std::make_shared<Obstacle>(std::move(name), std::move(positions), std::move(triangles));
-           }),
-           py::arg("name"), py::arg("positions"), py::arg("triangles"))
-      .def_property_readonly("positions", &Obstacle::positions)  // views
-      .def_property_readonly("triangles", &Obstacle::triangles)
-      .def(
-          "triangles_near",
-          [](const Obstacle& obstacle, const Vector3& low, const Vector3& high) {
-            const std::vector<Index> near = obstacle.triangles_near({low, high}, Execution(0));
-            return py::array_t<Index>(static_cast<py::ssize_t>(near.size()), near.data());
-          },
-          py::arg("low"), py::arg("high"));
-}
-
 void bind_options(py::module_& module) {
   py::class_<StorageFrame>(module, "StorageFrame")
       .def(py::init([](Index first, Index count, const Eigen::Matrix4d& frame) {
@@ -297,9 +279,26 @@ void bind_options(py::module_& module) {
 
 }  // namespace
 
+void bind_obstacle(py::module_& module) {
+  py::class_<Obstacle, std::shared_ptr<Obstacle>>(module, "Obstacle")
+      .def(py::init([](std::string name, Positions positions, Triangles triangles) {
+             const py::gil_scoped_release unlocked;
+             return std::make_shared<Obstacle>(std::move(name), std::move(positions), std::move(triangles));
+           }),
+           py::arg("name"), py::arg("positions"), py::arg("triangles"))
+      .def_property_readonly("positions", &Obstacle::positions)  // views
+      .def_property_readonly("triangles", &Obstacle::triangles)
+      .def(
+          "triangles_near",
+          [](const Obstacle& obstacle, const Vector3& low, const Vector3& high) {
+            const std::vector<Index> near = obstacle.triangles_near({low, high}, Execution(0));
+            return py::array_t<Index>(static_cast<py::ssize_t>(near.size()), near.data());
+          },
+          py::arg("low"), py::arg("high"));
+}
+
 void bind_editing(py::module_& module) {
   bind_options(module);
-  bind_obstacle(module);
   py::class_<CancelToken>(module, "CancelToken", "Cancels a call from any thread.")
       .def(py::init<>())
       .def("cancel", [](CancelToken& token) { token.cancelled = true; })

@@ -65,6 +65,7 @@ PYBIND11_MODULE(_native, module) {
   stiv::bindings::bind_vector_target(module);
   stiv::bindings::bind_job(module);
   stiv::bindings::bind_surface(module);
+  stiv::bindings::bind_obstacle(module);
   stiv::bindings::bind_deformation(module);
   stiv::bindings::bind_detection(module);
   stiv::bindings::bind_acceptance(module);

@@ -7,6 +7,7 @@ namespace stiv::bindings {
 
 void bind_job(pybind11::module_& module);
 void bind_surface(pybind11::module_& module);
+void bind_obstacle(pybind11::module_& module);
 void bind_deformation(pybind11::module_& module);
 void bind_detection(pybind11::module_& module);
 void bind_acceptance(pybind11::module_& module);
