@@ -288,7 +288,7 @@ class DragLoop:
             self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
         else:
             self._refinement = Refinement.NONE
-            self._run(self.edit.confirm_steps(), self._take_refined, can_cancel=not self._confirmed)
+            self._run(self.edit.confirm_steps(), self._take_confirmed, can_cancel=not self._confirmed)
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
@@ -345,19 +345,22 @@ class DragLoop:
         """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
         if self._is_cancelled(settled):
             return
-        self._take_refined(settled)
+        self._solves += 1
+        if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
+            self.result, self.writer.is_due = settled, True
         if settled.status != "budget" or self.stopped:
             return
         self._refinement = Refinement.SETTLING
         if not self._repeated.may_settle(settled, self._confirmed or self._rests()):
             self._end_settling()
 
-    def _take_refined(self, refined: EditResult) -> None:
-        if self._is_cancelled(refined):
+    def _take_confirmed(self, confirmed: EditResult) -> None:
+        """Take another state, if it is better. Otherwise the result before has the contacts of what is shown."""
+        if self._is_cancelled(confirmed):
             return
         self._solves += 1
-        if refined.path or refined.status not in ("unchanged", "cancelled", "budget"):
-            self.result, self.writer.is_due = refined, True
+        if confirmed.path:
+            self.result, self.writer.is_due = confirmed, True
 
     def _end_settling(self) -> None:
         """End the solves, of which the last ones gained little."""

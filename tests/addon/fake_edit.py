@@ -108,7 +108,7 @@ class FakeEdit:
             return FakeResult("cancelled")
         self._called("confirm")
         if self.from_start is None:
-            return FakeResult("unchanged")
+            return FakeResult("corrected")  # without a path: nothing better
         self.accepted = self.from_start
         return FakeResult("corrected", (self.accepted,))
 
