@@ -355,7 +355,7 @@ class DragLoop:
             self._end_settling()
 
     def _take_confirmed(self, confirmed: EditResult) -> None:
-        """Take another state, if it is better. Otherwise the result before has the contacts of what is shown."""
+        """Take another state, if it is better. Otherwise the result before has the contacts of the shown state."""
         if self._is_cancelled(confirmed):
             return
         self._solves += 1
