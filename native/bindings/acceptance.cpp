@@ -61,7 +61,7 @@ struct StepCheck {
 
   bool is_end_free(const PositionsView& start, const PositionsView& end) {
     Execution execution(threads);
-    return intersections.is_free(end, moved_vertices(start, end), execution);
+    return intersections.is_free(end, moved_vertices(start, end, execution), execution);
   }
 
   Detector detector;

@@ -8,6 +8,7 @@
 
 #include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
+#include "stiv/execution.hpp"
 
 namespace stiv {
 
@@ -192,16 +193,22 @@ bool Surface::in_one_flip_face(const Index* vertices, std::size_t count) const {
 
 Eigen::VectorXd Surface::vertex_areas(const PositionsView& q) const {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count());
-  add_vertex_areas(q, 0, static_cast<Index>(triangles().rows()), areas);
+  add_vertex_areas(q, 0, static_cast<Index>(triangles().rows()), areas, Execution(1));
   return areas;
 }
 
-void Surface::add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas) const {
-  for (Index face = first; face < end; ++face) {
-    const auto corner = [&](Index k) -> Vector3 { return q.row(triangles()(face, k)); };
-    const double third = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-    for (Index k = 0; k < 3; ++k) areas[triangles()(face, k)] += third;
-  }
+void Surface::add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas,
+                               const Execution& execution) const {
+  constexpr Index chunk_size = 4096;
+  Eigen::VectorXd thirds(end - first);
+  execution.for_chunks(end - first, chunk_size, [&](Index begin, Index last, Index) {
+    for (Index k = begin; k < last; ++k) {
+      const auto corner = [&](Index c) -> Vector3 { return q.row(triangles()(first + k, c)); };
+      thirds[k] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
+    }
+  });
+  for (Index face = first; face < end; ++face)
+    for (const Index corner : triangles().row(face)) areas[corner] += thirds[face - first];
 }
 
 std::string Surface::describe_vertex(Index vertex) const {

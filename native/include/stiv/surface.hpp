@@ -10,6 +10,8 @@
 
 namespace stiv {
 
+class Execution;
+
 /// How a body may move during an edit. It determines which pairs can interfere.
 enum class Mobility {
   fixed,      ///< never moves; not tested against fixed bodies, itself included
@@ -75,8 +77,9 @@ class Surface {
 
   /// The barycentric area of each vertex, (N), at positions q: a third of the adjacent triangles' areas. [P4, Eq. 3]
   Eigen::VectorXd vertex_areas(const PositionsView& q) const;
-  /// Adds what the triangles [first, end) contribute to them.
-  void add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas) const;
+  /// Adds what the triangles [first, end) contribute to them, in order.
+  void add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas,
+                        const Execution& execution) const;
 
   /// The name of a vertex in messages: object "X", vertex 12, numbered within its body.
   std::string describe_vertex(Index vertex) const;

@@ -43,8 +43,8 @@ CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const Edi
     : surface(std::move(guarded)),
       detector(surface, {.broad_phase = context.options().broad_phase}),
       cache(detector, static_cast<Index>(context.obstacles().rows())),
-      intersections(surface, {.lists_near_pairs = has_deviation_tests(context)}) {
-  intersections.set_resting(static_cast<Index>(context.obstacles().rows()));
+      intersections(surface, {.lists_near_pairs = has_deviation_tests(context),
+                              .resting = static_cast<Index>(context.obstacles().rows())}) {
   const EditOptions& options = context.options();
   if (options.narrow_phase != NarrowPhase::conservative)
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
@@ -122,11 +122,8 @@ Positions CollisionQueries::rows_with_obstacles(const Positions& q, std::span<co
 /// Of all vertices.
 std::vector<unsigned char> CollisionQueries::moved(const PositionsView& from, const PositionsView& to,
                                                    const Execution& execution) const {
-  constexpr Index rows_per_chunk = 4096;
-  std::vector<unsigned char> moved(at(context_.surface().vertex_count()), 0);
-  execution.for_chunks(static_cast<Index>(from.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
-    for (Index vertex = begin; vertex < end; ++vertex) moved[at(vertex)] = from.row(vertex) != to.row(vertex);
-  });
+  std::vector<unsigned char> moved = moved_vertices(from, to, execution);
+  moved.resize(at(context_.surface().vertex_count()), 0);
   return moved;
 }
 

@@ -54,12 +54,12 @@ double MovingPart::longest_displacement(const Positions& from, const Positions& 
 
 const Eigen::VectorXd& MovingPart::region_areas(const Positions& q, const Execution& execution) const {
   const bool is_first = areas_of_rest_.size() == 0;
-  if (is_first) compute_rest(q);
+  if (is_first) compute_rest(q, execution);
   if (is_first || !rest_is_complete_)
     areas_ = areas_of_rest_;
   else
     areas_.segment(corners_.first, corners_.count()) = areas_of_rest_.segment(corners_.first, corners_.count());
-  add_moving_areas(q, execution);
+  surface_->add_vertex_areas(q, triangles_.first, triangles_.end, areas_, execution);
   const auto moving = areas_.segment(corners_.first, corners_.count());
   if (!rest_is_complete_ || !(moving.array() > 0).all()) {
     substitute_missing_areas(areas_);
@@ -68,28 +68,14 @@ const Eigen::VectorXd& MovingPart::region_areas(const Positions& q, const Execut
   return areas_;
 }
 
-/// Surface::add_vertex_areas of the triangles that may move. Terms are computed on all threads, and added in order.
-void MovingPart::add_moving_areas(const Positions& q, const Execution& execution) const {
-  constexpr Index triangles_per_chunk = 4096;
-  const Triangles& triangles = surface_->triangles();
-  Eigen::VectorXd thirds(triangles_.count());
-  execution.for_chunks(triangles_.count(), triangles_per_chunk, [&](Index begin, Index end, Index) {
-    for (Index k = begin; k < end; ++k) {
-      const auto corner = [&](Index c) -> Vector3 { return q.row(triangles(triangles_.first + k, c)); };
-      thirds[k] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
-    }
-  });
-  for (Index triangle = triangles_.first; triangle < triangles_.end; ++triangle)
-    for (const Index corner : triangles.row(triangle)) areas_[corner] += thirds[triangle - triangles_.first];
-}
-
 /// Areas that the triangles of the other part give to all vertices.
-void MovingPart::compute_rest(const Positions& q) const {
+void MovingPart::compute_rest(const Positions& q, const Execution& execution) const {
   areas_of_rest_ = Eigen::VectorXd::Zero(surface_->vertex_count());
   SceneRows rows(obstacles_);
   const Positions& whole = rows.with_rest(q);
-  surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_);
-  surface_->add_vertex_areas(whole, triangles_.end, static_cast<Index>(surface_->triangles().rows()), areas_of_rest_);
+  const auto end = static_cast<Index>(surface_->triangles().rows());
+  surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_, execution);
+  surface_->add_vertex_areas(whole, triangles_.end, end, areas_of_rest_, execution);
   rest_is_complete_ = (areas_of_rest_.head(corners_.first).array() > 0).all() &&
                       (areas_of_rest_.tail(areas_of_rest_.size() - corners_.end).array() > 0).all();
 }

@@ -33,8 +33,7 @@ class MovingPart {
     void cover(Index element);
   };
 
-  void compute_rest(const Positions& q) const;
-  void add_moving_areas(const Positions& q, const Execution& execution) const;
+  void compute_rest(const Positions& q, const Execution& execution) const;
 
   std::shared_ptr<const Surface> surface_;
   const Positions& obstacles_;

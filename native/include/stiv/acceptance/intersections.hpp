@@ -33,6 +33,7 @@ struct StaticPairs {
 
 struct IntersectionTestOptions {
   bool lists_near_pairs = false;  ///< for `deviation_test`
+  Index resting = 0;  ///< the last vertices, this many, have the same positions in all calls. Their pairs are left out
 };
 
 /// Exact static test of a whole surface at positions q, (N, 3), all finite. It keeps its trees between calls. Pairs of
@@ -43,9 +44,6 @@ class IntersectionTest {
   ~IntersectionTest();
   IntersectionTest(IntersectionTest&&) noexcept;
   IntersectionTest& operator=(IntersectionTest&&) noexcept;
-
-  /// Promises that the last vertices, this many, have the same positions in all calls. Pairs among them are left out.
-  void set_resting(Index count);
 
   /// All pairs of triangles (smaller index first) that intersect.
   IndexPairs find(const PositionsView& q, Execution& execution);

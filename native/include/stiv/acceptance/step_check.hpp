@@ -9,7 +9,8 @@
 namespace stiv {
 
 /// Marks the vertices, (N), whose positions differ in any bit.
-std::vector<unsigned char> moved_vertices(const PositionsView& start, const PositionsView& end);
+std::vector<unsigned char> moved_vertices(const PositionsView& start, const PositionsView& end,
+                                          const Execution& execution);
 
 /// True if the linear step start -> end, (N, 3) each, is proven free of interference and its end free of intersections.
 /// The start must be free. These are the two conditions of an accepted state: a conservative continuous test of the

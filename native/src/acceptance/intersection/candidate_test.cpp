@@ -7,24 +7,23 @@
 
 namespace stiv {
 
-CandidateTest::CandidateTest(const Surface& surface, const Primitives& first, const Primitives& second,
-                             const PositionsView& q, const PackedPoints& points, NearPairs* near, Report report)
-    : surface_(surface),
-      first_(first),
-      second_(second),
-      q_(q),
-      points_(points),
-      near_(near),
-      report_(std::move(report)) {}
+bool intersect(const Surface& surface, const CornerPair& corners, const PositionsView& q) {
+  const auto& [a, b] = corners;
+  return !surface.in_one_flip_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q);
+}
 
-bool CandidateTest::add(const PrimitivePair& pair) {
-  const auto &a = first_.corners(pair.first), &b = second_.corners(pair.second);
-  if (share_corner(a, b)) {
-    list(pair);
-    return !intersect(pair) || report_(pair);
+CandidateTest::CandidateTest(const Surface& surface, const PositionsView& q, const PackedPoints& points,
+                             NearPairs* near, Report report)
+    : surface_(surface), q_(q), points_(points), near_(near), report_(std::move(report)) {}
+
+bool CandidateTest::add(const PrimitivePair& pair, const CornerPair& corners) {
+  if (share_corner(corners.first, corners.second)) {
+    list(corners);
+    return !intersect(surface_, corners, q_) || report_(pair);
   }
   pairs_[block_.count] = pair;
-  block_.add(a, b);
+  corners_[block_.count] = corners;
+  block_.add(corners.first, corners.second);
   return block_.count < TrianglePairs::capacity || finish();
 }
 
@@ -34,19 +33,14 @@ bool CandidateTest::finish() {
   const std::size_t count = std::exchange(block_.count, 0);
   for (std::size_t k = 0; k < count; ++k) {
     if (separated[k]) continue;
-    list(pairs_[k]);
-    if (intersect(pairs_[k]) && !report_(pairs_[k])) return false;
+    list(corners_[k]);
+    if (intersect(surface_, corners_[k], q_) && !report_(pairs_[k])) return false;
   }
   return true;
 }
 
-void CandidateTest::list(const PrimitivePair& pair) {
-  if (near_ != nullptr) near_->pairs.push_back({first_.corners(pair.first), second_.corners(pair.second)});
-}
-
-bool CandidateTest::intersect(const PrimitivePair& pair) const {
-  const auto &a = first_.corners(pair.first), &b = second_.corners(pair.second);
-  return !surface_.in_one_flip_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q_);
+void CandidateTest::list(const CornerPair& corners) {
+  if (near_ != nullptr) near_->pairs.push_back(corners);
 }
 
 }  // namespace stiv

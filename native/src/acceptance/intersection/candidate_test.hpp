@@ -4,13 +4,17 @@
 #include <functional>
 
 #include "acceptance/intersection/near_pairs.hpp"
-#include "acceptance/intersection/primitives.hpp"
 #include "acceptance/intersection/separating_plane_filter.hpp"
+#include "detection/primitive_pair.hpp"
+#include "stiv/surface.hpp"
 
 namespace stiv {
 
-/// Tests candidate pairs and reports those that intersect. Neighbors are tested one by one, other pairs in blocks that
-/// pass a filter first.
+/// Do two primitives intersect? Never if they are triangulations of one face.
+bool intersect(const Surface& surface, const CornerPair& corners, const PositionsView& q);
+
+/// Tests candidate pairs of primitives and reports those that intersect. Neighbors are tested one by one, other pairs
+/// in blocks that pass a filter first.
 class CandidateTest {
  public:
   /// Returns false to stop.
@@ -18,27 +22,27 @@ class CandidateTest {
 
   /// @param points q, packed
   /// @param near lists the candidates that no plane separates by its reach; null: none
-  CandidateTest(const Surface& surface, const Primitives& first, const Primitives& second, const PositionsView& q,
-                const PackedPoints& points, NearPairs* near, Report report);
+  CandidateTest(const Surface& surface, const PositionsView& q, const PackedPoints& points, NearPairs* near,
+                Report report);
 
   /// Adds a candidate. Returns false if the report stopped.
-  bool add(const PrimitivePair& pair);
+  /// @param pair its numbers, for the report
+  bool add(const PrimitivePair& pair, const CornerPair& corners);
 
   /// Tests the pairs of an incomplete block. Returns false if the report stopped.
   bool finish();
 
  private:
-  bool intersect(const PrimitivePair& pair) const;
-  void list(const PrimitivePair& pair);
+  void list(const CornerPair& corners);
 
   const Surface& surface_;
-  const Primitives &first_, &second_;
   PositionsView q_;
   const PackedPoints& points_;
   NearPairs* near_;
   Report report_;
   TrianglePairs block_;
   std::array<PrimitivePair, TrianglePairs::capacity> pairs_;
+  std::array<CornerPair, TrianglePairs::capacity> corners_;
 };
 
 }  // namespace stiv

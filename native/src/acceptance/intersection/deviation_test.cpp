@@ -5,8 +5,7 @@
 #include <atomic>
 #include <utility>
 
-#include "acceptance/intersection/separating_plane_filter.hpp"
-#include "stiv/acceptance/intersections.hpp"
+#include "acceptance/intersection/candidate_test.hpp"
 
 namespace stiv {
 
@@ -62,40 +61,18 @@ bool DeviationTest::Implementation::is_star_free(const PositionsView& q, Index v
   const std::span<const Index> link = stars_->link(vertex);
   for (std::size_t a = 1; a < link.size(); ++a)
     for (std::size_t b = 1; b < a; ++b)
-      if (intersect(q, {{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}})) return false;
+      if (intersect(*surface_, {{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}}, q)) return false;
   return true;
 }
 
 bool DeviationTest::Implementation::are_pairs_free(const PositionsView& q, const PackedPoints& points,
                                                    const Execution& execution) const {
   return all_chunks(near_.pairs.size(), execution, [&](std::size_t begin, std::size_t end) {
-    TrianglePairs block;
-    std::array<std::size_t, TrianglePairs::capacity> numbers{};
-    const auto is_block_free = [&] {
-      TriangleFlags separated;
-      find_separated(block, points, 0, separated);
-      const std::size_t count = std::exchange(block.count, 0);
-      for (std::size_t k = 0; k < count; ++k)
-        if (!separated[k] && intersect(q, near_.pairs[numbers[k]])) return false;
-      return true;
-    };
-    for (std::size_t k = begin; k < end; ++k) {
-      const CornerPair& pair = near_.pairs[k];
-      if (share_corner(pair.first, pair.second)) {
-        if (intersect(q, pair)) return false;
-        continue;
-      }
-      numbers[block.count] = k;
-      block.add(pair.first, pair.second);
-      if (block.count == TrianglePairs::capacity && !is_block_free()) return false;
-    }
-    return is_block_free();
+    CandidateTest test(*surface_, q, points, nullptr, [](const PrimitivePair&) { return false; });
+    for (std::size_t k = begin; k < end; ++k)
+      if (!test.add({}, near_.pairs[k])) return false;
+    return test.finish();
   });
-}
-
-bool DeviationTest::Implementation::intersect(const PositionsView& q, const CornerPair& pair) const {
-  const auto& [a, b] = pair;
-  return !surface_->in_one_flip_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q);
 }
 
 DeviationTest::DeviationTest(std::unique_ptr<const Implementation> implementation)

@@ -25,7 +25,6 @@ class DeviationTest::Implementation {
   bool are_stars_free(const PositionsView& q, const PackedPoints& points, const Execution& execution) const;
   bool is_star_free(const PositionsView& q, Index vertex) const;
   bool are_pairs_free(const PositionsView& q, const PackedPoints& points, const Execution& execution) const;
-  bool intersect(const PositionsView& q, const CornerPair& pair) const;
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Stars> stars_;

@@ -9,6 +9,7 @@
 #include "acceptance/intersection/candidate_test.hpp"
 #include "acceptance/intersection/near_pair_list.hpp"
 #include "acceptance/intersection/placed_vertices.hpp"
+#include "acceptance/intersection/primitives.hpp"
 #include "acceptance/intersection/stars.hpp"
 
 namespace stiv {
@@ -77,12 +78,13 @@ class Search {
   template <class Report>
   void scan(Index task, const Report& report) {
     NearPairs* const near = near_.empty() ? nullptr : &near_[at(task)];
-    CandidateTest test(surface_, first_, second_, q_, points_, near, report);
+    CandidateTest test(surface_, q_, points_, near, report);
     PairBuffer candidates;
     bool more = true;
     candidates.limit = 4096;
     candidates.full = [&](PairBuffer& found) {
-      for (std::size_t k = 0; k < found.count && more; ++k) more = test.add(found[k]);
+      for (std::size_t k = 0; k < found.count && more; ++k)
+        more = test.add(found[k], {first_.corners(found[k].first), second_.corners(found[k].second)});
       found.count = 0;
       return more;
     };
@@ -120,13 +122,9 @@ class IntersectionTest::Implementation {
         loose_vertices_(*surface_, loose_vertex_corners(*surface_)),
         stars_(std::make_shared<const Stars>(corners_within_tested_bodies(*surface_, triangles_.all_corners()),
                                              surface_->vertex_count())),
-        bodies_(pairs_of_bodies(*surface_)) {
+        bodies_(pairs_of_bodies(*surface_)),
+        resting_(options.resting) {
     if (options.lists_near_pairs) near_.emplace(surface_, stars_);
-  }
-
-  void set_resting(Index count) {
-    resting_ = count;
-    placed_.reset();
   }
 
   IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
@@ -240,7 +238,7 @@ class IntersectionTest::Implementation {
   std::vector<unsigned char> proofs_, proofs_before_;  ///< of stars, of the last two updates
   bool free_stars_are_left_out_ = false;               ///< in searches of triangles
   std::optional<NearPairList> near_;                   ///< if it is wanted
-  Index resting_ = 0;                                  ///< vertices
+  Index resting_;                                      ///< vertices
 };
 
 IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface, IntersectionTestOptions options)
@@ -248,8 +246,6 @@ IntersectionTest::IntersectionTest(std::shared_ptr<const Surface> surface, Inter
 IntersectionTest::~IntersectionTest() = default;
 IntersectionTest::IntersectionTest(IntersectionTest&&) noexcept = default;
 IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = default;
-
-void IntersectionTest::set_resting(Index count) { implementation_->set_resting(count); }
 
 IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;

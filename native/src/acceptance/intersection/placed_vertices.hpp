@@ -13,7 +13,7 @@ namespace stiv {
 /// Positions of all vertices and their boxes, kept from test to test: large bodies at rest cost only a comparison.
 class PlacedVertices {
  public:
-  /// @param resting as in IntersectionTest::set_resting
+  /// @param resting as in IntersectionTestOptions
   explicit PlacedVertices(const Surface& surface, Index resting = 0) : surface_(&surface), resting_(resting) {}
 
   /// @param moved as in IntersectionTest::is_free

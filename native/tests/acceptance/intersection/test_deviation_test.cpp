@@ -120,7 +120,7 @@ bool is_interrupted(IntersectionTest& test, const Positions& accepted, const Pos
   auto checks_left = static_cast<int>(random() % 25);
   execution.cancel_when([&] { return --checks_left < 0; });
   try {
-    test.is_free(q, moved_vertices(accepted, q), execution);
+    test.is_free(q, moved_vertices(accepted, q, Execution(1)), execution);
     return false;
   } catch (const Interrupted&) {
     return true;
@@ -141,7 +141,8 @@ TEST_CASE("deviation test: equals the complete test within its reach, and says n
       Execution execution(1 + trial % 3);
       Positions q = scale * layers.scene.q, accepted;
       for (int state = 0; state < 4; ++state) {
-        std::vector<unsigned char> moved = state == 0 ? std::vector<unsigned char>() : moved_vertices(accepted, q);
+        std::vector<unsigned char> moved =
+            state == 0 ? std::vector<unsigned char>() : moved_vertices(accepted, q, execution);
         const bool is_free =
             state % 2 == 0 && state < 2 ? test.find_all(q, execution).empty() : test.is_free(q, moved, execution);
         const auto near = test.deviation_test(q);
@@ -172,7 +173,7 @@ TEST_CASE("deviation test: belongs to the last surface without intersections, an
     CHECK(test.find_all(linked.q, execution).empty());
     near = test.deviation_test(linked.q);
     REQUIRE(near != nullptr);
-    CHECK_FALSE(test.is_free(pulled.q, moved_vertices(linked.q, pulled.q), execution));
+    CHECK_FALSE(test.is_free(pulled.q, moved_vertices(linked.q, pulled.q, execution), execution));
     CHECK(test.deviation_test(pulled.q) == nullptr);
     CHECK(test.deviation_test(linked.q) != nullptr);
     CHECK(IntersectionTest(surface).deviation_test(linked.q) == nullptr);

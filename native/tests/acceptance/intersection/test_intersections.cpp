@@ -110,8 +110,7 @@ TEST_CASE("intersections: vertices that rest are not looked at again, while star
   const auto moving = static_cast<Index>(scene.q.rows());
   scene.add_soup(60, 0.3, Mobility::fixed, random);
   const auto surface = scene.surface();
-  IntersectionTest test(surface);
-  test.set_resting(static_cast<Index>(scene.q.rows()) - moving);
+  IntersectionTest test(surface, {.resting = static_cast<Index>(scene.q.rows()) - moving});
   std::uniform_real_distribution<double> unit(-1, 1);
   std::size_t most = 0, least = 1000000;
   for (const double size : {0.0, 0.3, 0.3, 0.0, 0.02, 0.3, 0.0}) {

@@ -75,26 +75,21 @@ class EditSolver:
     def solve(self, goal: Floats | None, **limits: Any) -> Steps[stiv.EditResult]:
         """Steps that drag to a goal, (m, 3), or settle (None); the limits are those of stiv.EditSession.drag."""
         session = self.session
-        self._renew_jacobians()
         if goal is None:
-            result: stiv.EditResult = yield Call(session.settle, session.start_settle)
-        else:
-            result = yield Call(session.drag, session.start_drag, goal, **limits)
-        self._note(goal, result)
-        return result
+            return (yield from self._carry_out(None, Call(session.settle, session.start_settle)))
+        return (yield from self._carry_out(goal, Call(session.drag, session.start_drag, goal, **limits)))
 
     def confirm(self) -> Steps[stiv.EditResult]:
         """Steps that confirm a settled drag; see stiv.EditSession.confirm."""
-        session = self.session
-        self._renew_jacobians()
-        result: stiv.EditResult = yield Call(session.confirm, session.start_confirm)
-        self._note(None, result)
-        return result
+        return (yield from self._carry_out(None, Call(self.session.confirm, self.session.start_confirm)))
 
-    def _note(self, goal: Floats | None, result: stiv.EditResult) -> None:
+    def _carry_out(self, goal: Floats | None, call: Call[stiv.EditResult]) -> Steps[stiv.EditResult]:
+        self._renew_jacobians()
+        result: stiv.EditResult = yield call
         if result.status != "cancelled":  # its goal is no longer wanted
             self.trail.add(goal, result)
         self._blocked = result.status == "blocked"
+        return result
 
     def _renew_jacobians(self) -> None:
         """Renew the Jacobians of observed stacks sometimes, and after a blocked call, at the accepted state."""
