@@ -115,9 +115,9 @@ def jobs(name: str) -> Iterator[Job]:
     elif name == "sanitizers":
         yield Job(name, lambda: native(name, "native", "--tests-regex", "^sanitized_"), alone=True)
     elif name == "threads":
-        yield Job(name, lambda: native(name, "tsan", "--tests-regex", "^threads$"), alone=True)
+        yield Job(name, lambda: native(name, "tsan", "--tests-regex", "^threads$"))
     elif name == "windows":
-        yield Job(name, lambda: windows(name), alone=True)
+        yield Job(name, lambda: windows(name))
     elif name == "python":
         yield Job(name, lambda: pytest(name, BUILD / "venv", "-m", "not blender"))
     elif name == "blender":

@@ -28,6 +28,7 @@ LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would 
 HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
+COMPARING_TIME = 3.0  # seconds for which the user waits for another way to the goal, at most
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 
@@ -139,6 +140,7 @@ class DragLoop:
         self._solves = 0
         self._repeated = RepeatedSolves()
         self._aimed_at: State | None = None  # state of the last goal
+        self._compares_until: float | None = None  # when another way to the goal, if sought, is given up after Enter
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._run(calls.begin(state.request), self._take_first_edit)
@@ -230,6 +232,7 @@ class DragLoop:
             self._task.cancel()
 
     def _advance(self) -> None:
+        self._limit_comparison()
         end, solves = time.perf_counter() + FRAME, self._solves
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
@@ -260,9 +263,9 @@ class DragLoop:
             if not self._task.advance(seconds):
                 return False
         except BaseException:
-            self._task = None
+            self._task = self._compares_until = None
             raise
-        result, self._task = self._task.result, None
+        result, self._task, self._compares_until = self._task.result, None, None
         self._take(result)
         return True
 
@@ -270,7 +273,7 @@ class DragLoop:
         """End a task without its result. A session is free afterwards; the start need not be waited for."""
         if self._task is not None:
             (self._task.abandon if self.edit is None else self._task.close)()
-        self._task = None
+        self._task = self._compares_until = None
 
     def _begin_work(self) -> bool:
         """Begin the next task, if any: another edit, a solve, or settling after the confirmation."""
@@ -288,7 +291,14 @@ class DragLoop:
             self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
         else:
             self._refinement = Refinement.NONE
+            self._compares_until = time.perf_counter() + COMPARING_TIME
             self._run(self.edit.confirm_steps(), self._take_confirmed, can_cancel=not self._confirmed)
+
+    def _limit_comparison(self) -> None:
+        """After the confirmation, keep the settled state where the comparison with the edit from the start is slow."""
+        if self._confirmed and self._compares_until is not None and time.perf_counter() > self._compares_until:
+            assert self._task is not None
+            self._task.cancel()
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
@@ -410,6 +420,8 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
+        if self._compares_until is not None:
+            self._compares_until = time.perf_counter() + COMPARING_TIME
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending = True

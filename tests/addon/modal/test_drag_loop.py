@@ -365,6 +365,25 @@ def test_esc_ends_a_confirming_solve_and_keeps_the_settled_state() -> None:
     assert drag.progress is Progress.FINISHED and drag.stopped and edit.shown == edit.accepted == 0.3
 
 
+@pytest.mark.parametrize("rests", [True, False])
+def test_a_slow_comparison_with_the_edit_from_the_start_ends_soon_after_the_confirmation(
+    rests: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the mouse rests, nobody waits for it."""
+    monkeypatch.setattr(drag_loop, "COMPARING_TIME", 0.0)
+    monkeypatch.setattr(drag_loop, "REST_TIME", 0.0 if rests else 1e9)
+    edit = FakeEdit(statuses=["blocked"], furthest=0.3, from_start=0.8, delays={"confirm": 1000})
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    for _ in range(5):
+        assert drag.tick() is Progress.RUNNING
+    assert not edit.cancelled
+    drag.handle(Event("LEFTMOUSE"))
+    for _ in range(3):
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and not drag.stopped and edit.shown == edit.accepted == 0.3
+
+
 def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
     edit = FakeEdit(settling=True)
     drag = new_drag(edit)
