@@ -62,6 +62,7 @@ class ObstacleSession final : public SessionImplementation {
     const Eigen::AlignedBox3d bounds = moving_bounds(*surface_, deformation_->surface_in_range(controls, execution));
     open(around(bounds), controls, controls, execution);
     if (!is_inside(bounds)) open(whole_space(), controls, controls, execution);
+    bounds_ = bounds;
   }
 
   EditResult edit(const Controls& goal, Execution& execution) override {
@@ -92,6 +93,7 @@ class ObstacleSession final : public SessionImplementation {
       with_scene_numbers(near_->scene, controls, [&] { near_->session->restore(controls, goal); });
     else
       open(around(bounds), controls, goal, execution);
+    bounds_ = bounds;
     goal_ = goal;
     motion_.setZero();
     next_.reset();
@@ -102,6 +104,7 @@ class ObstacleSession final : public SessionImplementation {
     near_->session->set_weights(weights, weight_axes);
     options_.weights = std::move(weights);
     options_.weight_axes = std::move(weight_axes);
+    bounds_ = moving_bounds(*surface_, surface());
   }
 
   void end_drag() override { next_.reset(); }
@@ -173,7 +176,11 @@ class ObstacleSession final : public SessionImplementation {
   /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
   /// has changed.
   void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
-    near_ = next_ && is_next(box) ? take_next(accepted, goal, execution) : make_near(box, accepted, goal, execution);
+    exchange_near(box, make_near(box, accepted, goal, execution));
+  }
+
+  void exchange_near(const Eigen::AlignedBox3d& box, std::unique_ptr<NearSession> near) {
+    near_ = std::move(near);
     box_ = box;
     next_.reset();
   }
@@ -182,9 +189,12 @@ class ObstacleSession final : public SessionImplementation {
     return next_->box().min() == box.min() && next_->box().max() == box.max();
   }
 
+  /// The prepared session, from a state that the open one has accepted. So all pairs within the surface, and those
+  /// with the triangles that touch the present box, have passed the exact test at the same positions. No other triangle
+  /// of an obstacle can meet the surface, because that lies inside the present box. Nothing is left to be tested.
   std::unique_ptr<NearSession> take_next(const Controls& accepted, const Controls& goal, Execution& execution) {
     auto near = next_->take(execution);
-    with_scene_numbers(near->scene, accepted, [&] { near->session->restore(accepted, goal); });
+    near->session->restore_free(accepted, goal);
     return near;
   }
 
@@ -197,7 +207,7 @@ class ObstacleSession final : public SessionImplementation {
   /// accepted states alone, and not on the number of threads.
   void look_ahead(int threads) {
     if (!options_.excluded.empty() || !options_.overlapping.empty()) return;  // compared with where a session began
-    const Eigen::AlignedBox3d now = moving_bounds(*surface_, surface());
+    const Eigen::AlignedBox3d& now = bounds_;
     if (now.isEmpty() || is_inside(after(now, ticks_ahead))) return;
     if (next_ && contains(next_->box(), after(now, 1), margin())) return;
     next_.reset();
@@ -217,17 +227,21 @@ class ObstacleSession final : public SessionImplementation {
   template <class Call>
   EditResult carry_out(const Controls& goal, Execution& execution, const Call& call) {
     const Controls before = controls(), goal_before = goal_;
-    const Eigen::AlignedBox3d start = moving_bounds(*surface_, surface());
+    const Eigen::AlignedBox3d start = bounds_;
     Eigen::AlignedBox3d bounds = start.isEmpty() ? start : after(start, 1);
     if (!is_inside(bounds)) reopen(next_around(bounds), before, goal_before, execution);
     EditResult result = call();
-    for (int boxes = 1; result.status != EditStatus::cancelled && !is_inside(bounds_of(result)); ++boxes) {
-      bounds.extend(bounds_of(result));
+    for (int boxes = 1; result.status != EditStatus::cancelled; ++boxes) {
+      bounds_ = moving_bounds(*surface_, result.surface);
+      const Eigen::AlignedBox3d path = bounds_of_path(result);
+      if (is_inside(path)) break;
+      bounds.extend(path);
+      bounds_ = start;
       reopen(boxes < boxes_per_call ? next_around(bounds) : whole_space(), before, goal_before, execution);
       result = call();  // returns at once if it was cancelled
     }
     if (result.status != EditStatus::cancelled) goal_ = goal;
-    if (!start.isEmpty()) motion_ = moving_bounds(*surface_, surface()).center() - start.center();
+    if (!start.isEmpty()) motion_ = bounds_.center() - start.center();
     return with_scene_numbers(std::move(result));
   }
 
@@ -237,17 +251,20 @@ class ObstacleSession final : public SessionImplementation {
     Execution execution(options_.threads);
     execution.cancel_when([&] { return of_call.cancel_requested(); });
     try {
-      open(box, accepted, goal, execution);
+      if (next_ && is_next(box))
+        exchange_near(box, take_next(accepted, goal, execution));
+      else
+        open(box, accepted, goal, execution);
     } catch (...) {
       near_->session->restore(accepted, goal);
       if (!of_call.cancel_requested()) throw;
     }
   }
 
-  /// Bounds of all states of a result. Between them, the surface moves linearly.
-  Eigen::AlignedBox3d bounds_of(const EditResult& result) const {
+  /// Bounds of all states of a result, the last of which are `bounds_`. Between them, the surface moves linearly.
+  Eigen::AlignedBox3d bounds_of_path(const EditResult& result) const {
     const Execution execution(options_.threads);
-    Eigen::AlignedBox3d bounds = moving_bounds(*surface_, result.surface);
+    Eigen::AlignedBox3d bounds = bounds_;
     for (std::size_t k = 0; k + 1 < result.path.size(); ++k)
       bounds.extend(moving_bounds(*surface_, deformation_->surface_in_range(result.path[k], execution)));
     return bounds;
@@ -300,6 +317,7 @@ class ObstacleSession final : public SessionImplementation {
   std::vector<Index> named_bodies_;   ///< by options
   Controls goal_;                     ///< of the last call
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
+  Eigen::AlignedBox3d bounds_;        ///< of the accepted surface
   Eigen::AlignedBox3d box_;
   std::unique_ptr<NearSession> near_;
   std::optional<NextSession> next_;  ///< last: its thread refers to the other members

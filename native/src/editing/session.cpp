@@ -44,6 +44,11 @@ class SurfaceSession final : public SessionImplementation {
     restore(controls, goal, execution);
   }
 
+  void restore_free(const Controls& controls, const Controls& goal) override {
+    checked_ = controls;
+    restore(controls, goal);
+  }
+
   void restore(const Controls& controls, const Controls& goal, Execution& execution) {
     const FloatingPointScope floating_point;
     context_.check_controls(controls, "controls");

@@ -19,6 +19,9 @@ class SessionImplementation {
   virtual EditResult settle(Execution& execution) = 0;
   virtual EditResult confirm(Execution& execution) = 0;
   virtual void restore(const Controls& controls, const Controls& goal) = 0;
+  /// As restore, for controls whose surface is known to be free of intersections: it is not tested again. For sessions
+  /// without excluded pairs and bodies that may overlap.
+  virtual void restore_free(const Controls& controls, const Controls& goal) { restore(controls, goal); }
   virtual void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) = 0;
   virtual void end_drag() {}
   virtual bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) = 0;

@@ -194,26 +194,26 @@ void Bvh::find_touched(std::span<const Index> vertices) {
   }
 }
 
-void Bvh::find_touched(const std::vector<unsigned char>& changed_groups) {
-  touched_.clear();
-  for (std::size_t block = 0; block < order_.size() / width; ++block)
-    if (changed_groups[levels_[0].groups[block]] != 0) touched_.push_back(static_cast<Index>(block));
+void Bvh::list_parents(const std::vector<Index>& nodes, std::vector<Index>& parents) const {
+  parents.clear();
+  for (const Index node : nodes)
+    if (parents.empty() || parents.back() != node / width) parents.push_back(node / width);
 }
 
-/// On several threads, all nodes are summarized sooner than many are by a single one.
-void Bvh::summarise_touched(const Execution& execution) {
-  constexpr std::size_t many = 1 << 14;
-  if (touched_.size() < std::max(many, order_.size() / width / 2))
-    summarise_touched();
-  else
-    summarise_all(execution);
+void Bvh::list_nodes_of(const std::vector<unsigned char>& groups) {
+  if (groups == listed_groups_ && !group_nodes_.empty()) return;
+  group_nodes_.assign(levels_.size(), {});
+  listed_groups_ = groups;
+  if (levels_.empty()) return;
+  for (std::size_t block = 0; block < order_.size() / width; ++block)
+    if (groups[levels_[0].groups[block]] != 0) group_nodes_[0].push_back(static_cast<Index>(block));
+  for (std::size_t level = 1; level < levels_.size(); ++level)
+    list_parents(group_nodes_[level - 1], group_nodes_[level]);
 }
 
 void Bvh::summarise_touched() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
-    parents_.clear();
-    for (const Index node : touched_)
-      if (parents_.empty() || parents_.back() != node / width) parents_.push_back(node / width);
+    list_parents(touched_, parents_);
     summarise(level, parents_.data(), 0, static_cast<Index>(parents_.size()));
     std::swap(touched_, parents_);
   }
@@ -234,11 +234,16 @@ void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const 
 
 void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<Index>& block_corners,
                                const std::vector<PackedBox>& vertices, const Execution& execution) {
-  find_touched(changed);
-  execution.for_chunks(static_cast<Index>(touched_.size()), chunk_size, [&](Index begin, Index end, Index) {
-    refit_blocks(touched_.data(), begin, end, block_corners, vertices.data());
-  });
-  summarise_touched(execution);
+  list_nodes_of(changed);
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const std::vector<Index>& nodes = group_nodes_[level];
+    execution.for_chunks(static_cast<Index>(nodes.size()), chunk_size, [&](Index begin, Index end, Index) {
+      if (level == 0)
+        refit_blocks(nodes.data(), begin, end, block_corners, vertices.data());
+      else
+        summarise(level, nodes.data(), begin, end);
+    });
+  }
 }
 
 void Bvh::refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices) {

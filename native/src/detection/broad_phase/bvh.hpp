@@ -153,9 +153,9 @@ class Bvh {
   void refit_blocks(const Index* blocks, Index begin, Index end, const std::vector<Index>& corners,
                     const PackedBox* vertices);
   void find_touched(std::span<const Index> vertices);
-  void find_touched(const std::vector<unsigned char>& changed_groups);
   void summarise_touched();
-  void summarise_touched(const Execution& execution);
+  void list_parents(const std::vector<Index>& nodes, std::vector<Index>& parents) const;
+  void list_nodes_of(const std::vector<unsigned char>& groups);
   void summarise_all(const Execution& execution);
 
   static constexpr Index chunk_size = 512;
@@ -165,9 +165,11 @@ class Bvh {
   std::vector<Level> levels_;  // blocks first, the root last
   std::vector<Index> corners_;
   Index corner_size_ = 0;
-  std::optional<BlockIncidence> incidence_;  // of these corners, for refit_some_corners
-  std::vector<unsigned char> is_touched_;    // its work space: for each block, zero between calls
-  std::vector<Index> touched_, parents_;     // the blocks, ascending
+  std::optional<BlockIncidence> incidence_;      // of these corners, for refit_some_corners
+  std::vector<unsigned char> is_touched_;        // its work space: for each block, zero between calls
+  std::vector<Index> touched_, parents_;         // the blocks, ascending
+  std::vector<unsigned char> listed_groups_;     // mostly the same bodies move in all steps
+  std::vector<std::vector<Index>> group_nodes_;  // of each level: the nodes above primitives of these, ascending
 };
 
 /// Centers of boxes, zero where one is infinite.

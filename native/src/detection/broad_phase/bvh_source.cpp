@@ -44,12 +44,17 @@ class BvhSource final : public CandidateSource {
 
   void prepare(const PositionsView& start, const Execution& execution) override {
     vertices_.prepare(start, execution);
+    const auto prepare = [&](auto& tree) {
+      tree.prepare(start, execution);
+      tree.prepare_later_updates();
+    };
     execution.for_chunks(2, 1, [&](Index, Index, Index kind) {  // most of a tree is built on one thread
       if (kind == 0)
-        edges_.prepare(start, execution);
+        prepare(edges_);
       else
-        faces_.prepare(start, execution);
+        prepare(faces_);
     });
+    vertices_.prepare_later_updates();
     vertices_.drop_curve();
   }
 
@@ -127,11 +132,12 @@ class BvhSource final : public CandidateSource {
 
   /// Traverses the trees and caches the pairs. If they are too many to cache, each visit traverses again.
   void collect(const Execution& execution) {
-    for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
-      Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
+    execution.for_chunks(2, 1, [&](Index, Index, Index number) {
+      const auto kind = static_cast<EventKind>(number);
+      Pairs& pairs = pairs_[at(number)];
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
       pairs.near.resize(pairs.tasks.size());
-    }
+    });
     compared_ = near_ = 0;
     const auto faces = static_cast<Index>(of(EventKind::vertex_face).tasks.size());
     const auto count = faces + static_cast<Index>(of(EventKind::edge_edge).tasks.size());

@@ -99,6 +99,7 @@ using Ints = hn::RebindToSigned<Floats>;
 using FloatMask = hn::Mask<Floats>;
 
 constexpr std::size_t width = 8;
+constexpr unsigned all_children = 0xFF, all_but_last = 0x7F;  // within a block, the last one has none behind it
 
 /// A box as its numbers lie in memory: those of a PackedBox follow each other, those of a child of a node do not.
 template <std::size_t stride>
@@ -153,19 +154,6 @@ HWY_INLINE Bvh::Node grown_children(const Bvh::Node& node, const BoxGrowth& grow
       hn::Store(hn::Max(sum, hn::Set(d, std::numeric_limits<float>::lowest())), d, result.planes[plane] + lane);
     }
   return result;
-}
-
-/// The lanes in the mask, moved to the front. GCC 12 copies the table of Highway's own Compress for AVX2 (1 KB) to the
-/// stack at each call.
-HWY_INLINE hn::Vec<Ints> compressed(hn::Vec<Ints> lanes, FloatMask mask) {
-  const Ints i;
-#if HWY_TARGET == HWY_AVX2
-  const hn::CappedTag<std::uint8_t, 8> bytes;
-  const auto order = hn::PromoteTo(i, hn::LoadU(bytes, lanes_of_bits[bits_of(mask)].data()));
-  return hn::TableLookupLanes(lanes, hn::IndicesFromVec(i, order));
-#else
-  return hn::Compress(lanes, hn::RebindMask(i, mask));
-#endif
 }
 
 /// Lanes of a block whose primitives have none of the given corners.
@@ -230,39 +218,70 @@ HWY_INLINE void list_blocks(const Traversal& t, ParentPairs& parents, BlockPairs
   }
 }
 
-/// Passes on the primitives of a block that meet the one in lane `k` of `a`: the first block, as it is in the frame of
-/// the other.
+/// Pairs of a primitive of the first tree, given by its place, and a block, with the lanes of that block that it meets.
+/// Few primitives meet any but their neighbors, so these lists are short.
+template <std::size_t most>
+struct HitList {
+  std::array<Index, most> place, other;
+  std::array<unsigned char, most> lanes;
+  std::size_t count = 0;
+
+  /// Without a branch: each row is written, and the count decides whether it stays.
+  HWY_INLINE void add(Index first, Index second, unsigned bits) {
+    place[count] = first;
+    other[count] = second;
+    lanes[count] = static_cast<unsigned char>(bits);
+    count += bits != 0;
+  }
+};
+
+/// The primitives of a block, without a common corner, that meet the one in lane `k` of `a`: the first block, as it is
+/// in the frame of the other.
 template <Index size_a, Index size_b>
-HWY_INLINE std::size_t meet_row(const Traversal& t, const Bvh::Node& a, Index block, std::size_t k, Index other,
-                                std::size_t count) {
+HWY_INLINE unsigned met_lanes(const Traversal& t, const Bvh::Node& a, Index block, std::size_t k, Index other) {
   const Floats d;
-  const Ints i;
   const Bvh::Node& b = t.b.nodes[0][other];
-  const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(other) * Bvh::width;
-  const auto primitive = hn::Set(i, t.a.order[static_cast<std::size_t>(block) * width + k]);
-  // Within one block, only the primitives behind it: each pair once.
-  const auto least = hn::Set(i, t.same_tree && block == other ? static_cast<std::int32_t>(k) : -1);
+  unsigned bits = 0;
   for (std::size_t lane = 0; lane < width; lane += hn::Lanes(d)) {
     FloatMask mask = meeting_lanes(b, child(a, k), lane);
     if constexpr (size_a > 0)
       mask = apart_lanes<size_a, size_b>(t.a.corners + static_cast<std::size_t>(block) * width * size_a + k,
                                          t.b.corners + static_cast<std::size_t>(other) * width * size_b, lane, mask);
-    mask = hn::And(mask, hn::RebindMask(d, hn::Gt(hn::Iota(i, static_cast<std::int32_t>(lane)), least)));
-    hn::StoreU(primitive, i, t.found->first.data() + count);
-    // Not CompressStore: straight to memory, some processors take a hundred times longer.
-    hn::StoreU(compressed(hn::LoadU(i, order + lane), mask), i, t.found->second.data() + count);
-    count += hn::CountTrue(d, mask);
+    bits |= bits_of(mask) << lane;
   }
-  return count;
+  // Within one block, only the primitives behind it: each pair once.
+  return t.same_tree && block == other ? bits & (~1U << k) : bits;
+}
+
+/// Passes on the pairs of a list.
+template <std::size_t most>
+HWY_INLINE void pass_on(const Traversal& t, const HitList<most>& hits) {
+  const Ints i;
+  const hn::Rebind<std::uint8_t, Ints> bytes;
+  t.reserve(hits.count);
+  std::size_t count = t.found->count;
+  for (std::size_t hit = 0; hit < hits.count; ++hit) {
+    const auto first = hn::Set(i, t.a.order[hits.place[hit]]);
+    const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(hits.other[hit]) * Bvh::width;
+    const std::uint8_t* const lanes = lanes_of_bits[hits.lanes[hit]].data();
+    for (std::size_t lane = 0; lane < width; lane += hn::Lanes(i)) {
+      hn::StoreU(first, i, t.found->first.data() + count + lane);
+      hn::StoreU(hn::GatherIndex(i, order, hn::PromoteTo(i, hn::LoadU(bytes, lanes + lane))), i,
+                 t.found->second.data() + count + lane);
+    }
+    count += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(hits.lanes[hit])));
+  }
+  t.found->count = count;
 }
 
 template <Index size_a, Index size_b>
 void meet_grown_blocks(const Traversal& t, Index block, Index other, const Bvh::Node& a) {
-  t.reserve(width);
-  std::size_t count = t.found->count;
-  for (unsigned left = meeting_children(a, t.b.boxes[0][other]); left != 0; left &= left - 1)
-    count = meet_row<size_a, size_b>(t, a, block, static_cast<std::size_t>(std::countr_zero(left)), other, count);
-  t.found->count = count;
+  HitList<width> hits;
+  for (unsigned left = meeting_children(a, t.b.boxes[0][other]); left != 0; left &= left - 1) {
+    const int k = std::countr_zero(left);
+    hits.add(block * Bvh::width + k, other, met_lanes<size_a, size_b>(t, a, block, static_cast<std::size_t>(k), other));
+  }
+  pass_on(t, hits);
 }
 
 /// Compares listed blocks, of which the second ones are those of the first tree, and empties the lists. False if the
@@ -274,16 +293,17 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
     PairList<some_blocks * width> rows;
     for (std::size_t k = begin; k < std::min(begin + some_blocks, blocks.count); ++k) {
       const Index block = blocks.second[k], other = blocks.first[k];
-      rows.add_children(block, meeting_children(t.a.nodes[0][block], t.b.boxes[0][other]), other);
+      const unsigned partners = t.same_tree && block == other ? all_but_last : all_children;
+      rows.add_children(block, partners & meeting_children(t.a.nodes[0][block], t.b.boxes[0][other]), other);
     }
-    t.reserve(rows.count);
-    std::size_t count = t.found->count;
+    HitList<some_blocks * width> hits;
     for (std::size_t row = 0; row < rows.count; ++row) {
-      const Index block = rows.first[row] / Bvh::width;
-      count = meet_row<size_a, size_b>(t, t.a.nodes[0][block], block,
-                                       static_cast<std::size_t>(rows.first[row] % Bvh::width), rows.second[row], count);
+      const Index place = rows.first[row], block = place / Bvh::width;
+      hits.add(place, rows.second[row],
+               met_lanes<size_a, size_b>(t, t.a.nodes[0][block], block, static_cast<std::size_t>(place % Bvh::width),
+                                         rows.second[row]));
     }
-    t.found->count = count;
+    pass_on(t, hits);
     if (!t.wants_more()) return false;
   }
   blocks.count = 0;
