@@ -129,6 +129,7 @@ class BvhSource final : public CandidateSource {
   void collect(const Execution& execution) {
     for (const EventKind kind : {EventKind::vertex_face, EventKind::edge_edge}) {
       Pairs& pairs = pairs_[static_cast<std::size_t>(kind)];
+      pairs.near = {};  // before the next pairs are found, since both together would be a peak of memory
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
       pairs.near.resize(pairs.tasks.size());
     }
@@ -151,9 +152,9 @@ class BvhSource final : public CandidateSource {
   }
 
   void collect(EventKind kind, Index task) {
-    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[task];
-    near.clear();
     if (!few_enough()) return;
+    static thread_local std::vector<Candidate> near;  // to keep the pairs in exactly the memory that they need
+    near.clear();
     traverse(kind, task, [&](const PairBuffer& found) {
       const std::size_t before = near.size();
       append_near(kind, found, near);
@@ -161,8 +162,7 @@ class BvhSource final : public CandidateSource {
       near_ += static_cast<std::int64_t>(near.size() - before);
       return few_enough();
     });
-    // Release the memory: in a long session, every task has a large step at some time.
-    if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
+    pairs_[static_cast<std::size_t>(kind)].near[task] = near;
   }
 
   /// Calls `take(batch)` with the pairs of a task, batch by batch, until it returns false.
