@@ -84,8 +84,14 @@ std::vector<SparseField> split(const SparseField& field, const Places& places, s
   return fields;
 }
 
-void append(SparseField& whole, const SparseField& added, Index first) {
-  for (const Index index : added.index) whole.index.push_back(first + index);
+/// In exactly the memory of the added field if it is the first: hundreds of steps are kept at once.
+void append(SparseField& whole, SparseField added, Index first) {
+  for (Index& index : added.index) index += first;
+  if (whole.index.empty()) {
+    whole = std::move(added);
+    return;
+  }
+  whole.index.insert(whole.index.end(), added.index.begin(), added.index.end());
   whole.value.insert(whole.value.end(), added.value.begin(), added.value.end());
 }
 

@@ -81,13 +81,13 @@ void ConstraintSet::drop_inactive() {
     active.push_back(r);
     if (r < gram_.rows()) in_gram.push_back(r);
   }
-  const Eigen::MatrixXd gram = gram_(in_gram, in_gram);
-  const Eigen::VectorXd multipliers = multipliers_(active);
+  Eigen::MatrixXd gram = gram_(in_gram, in_gram);
+  Eigen::VectorXd multipliers = multipliers_(active);
   for (std::size_t k = 0; k < active.size(); ++k)
     if (static_cast<Eigen::Index>(k) != active[k]) constraints_[k] = std::move(constraints_[active[k]]);
   constraints_.resize(active.size());
-  gram_ = gram;
-  multipliers_ = multipliers;
+  gram_ = std::move(gram);
+  multipliers_ = std::move(multipliers);
 }
 
 Controls ConstraintSet::project(const Controls& from, const Execution& execution) {

@@ -24,6 +24,11 @@ void make_as_long(Eigen::VectorXd& multipliers, Eigen::Index size) {
 class FieldList {
  public:
   FieldList(const std::vector<ControlConstraint>& constraints, SparseField ControlConstraint::*field) {
+    std::size_t count = 0;
+    for (const ControlConstraint& constraint : constraints) count += (constraint.*field).index.size();
+    index_.reserve(count);
+    value_.reserve(count);
+    end_.reserve(constraints.size());
     for (const ControlConstraint& constraint : constraints) {
       const SparseField& entries = constraint.*field;
       index_.insert(index_.end(), entries.index.begin(), entries.index.end());

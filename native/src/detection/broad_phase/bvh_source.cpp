@@ -135,6 +135,7 @@ class BvhSource final : public CandidateSource {
     execution.for_chunks(2, 1, [&](Index, Index, Index number) {
       const auto kind = static_cast<EventKind>(number);
       Pairs& pairs = pairs_[at(number)];
+      pairs.near = {};  // before the next pairs are found, since both together would be a peak of memory
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
       pairs.near.resize(pairs.tasks.size());
     });
@@ -157,9 +158,9 @@ class BvhSource final : public CandidateSource {
   }
 
   void collect(EventKind kind, Index task) {
-    std::vector<Candidate>& near = pairs_[static_cast<std::size_t>(kind)].near[task];
-    near.clear();
     if (!few_enough()) return;
+    static thread_local std::vector<Candidate> near;  // to keep the pairs in exactly the memory that they need
+    near.clear();
     traverse(kind, task, [&](const PairBuffer& found) {
       const std::size_t before = near.size();
       append_near(kind, found, near);
@@ -167,8 +168,7 @@ class BvhSource final : public CandidateSource {
       near_ += static_cast<std::int64_t>(near.size() - before);
       return few_enough();
     });
-    // Release the memory: in a long session, every task has a large step at some time.
-    if (near.capacity() > 2 * near.size()) near.shrink_to_fit();
+    pairs_[static_cast<std::size_t>(kind)].near[task] = near;
   }
 
   /// Calls `take(batch)` with the pairs of a task, batch by batch, until it returns false.

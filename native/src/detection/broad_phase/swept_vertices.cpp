@@ -227,7 +227,7 @@ void SweptVertices::take_steps(const Step& step, const Execution& execution) {
   steps_.update(step.start, step.end, outdated_, execution);
   outdated_.insert(outdated_.end(), changed_.begin(), changed_.end());
   steps_.update(step.start, step.end, changed_, execution);
-  outdated_ = changed_;
+  outdated_ = std::vector<Index>(changed_);  // without the capacity of both
 }
 
 /// Are both ends of the step within an eighth of the separation of a surface, and are the boxes of all vertices that
