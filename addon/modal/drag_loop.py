@@ -28,7 +28,7 @@ LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would 
 HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
-COMPARING_TIME = 3.0  # seconds for which the user waits for another way to the goal, at most
+COMPARING_TIME = 5.0  # seconds for which the user waits for another way to the goal, at most
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 
