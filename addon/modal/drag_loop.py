@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -28,7 +29,7 @@ LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would 
 HAND_OVER = 0.008  # seconds after which a solve ends with the state that it accepts next, to be shown at once
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
-COMPARING_TIME = 5.0  # seconds for which the user waits for another way to the goal, at most
+COMPARING_TIME = 5.0  # seconds that the comparison with the edit from the start may take after the confirmation
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 
@@ -140,7 +141,6 @@ class DragLoop:
         self._solves = 0
         self._repeated = RepeatedSolves()
         self._aimed_at: State | None = None  # state of the last goal
-        self._compares_until: float | None = None  # when another way to the goal, if sought, is given up after Enter
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._run(calls.begin(state.request), self._take_first_edit)
@@ -232,7 +232,7 @@ class DragLoop:
             self._task.cancel()
 
     def _advance(self) -> None:
-        self._limit_comparison()
+        self._end_slow_task()
         end, solves = time.perf_counter() + FRAME, self._solves
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
@@ -252,9 +252,18 @@ class DragLoop:
     def _needs_refinement(self) -> bool:
         return self.result is not None and self._refinement is not Refinement.NONE
 
-    def _run(self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False) -> None:
+    def _run(
+        self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False, limit: float = math.inf
+    ) -> None:
+        """Run a task; limit: seconds after the confirmation in which it must end."""
         self._task: Task[Any] | None = self._calls.task(steps)
-        self._take, self._can_cancel = take, can_cancel
+        self._take, self._can_cancel, self._limit = take, can_cancel, limit
+        self._waited_since = time.perf_counter()
+
+    def _end_slow_task(self) -> None:
+        """After the confirmation, cancel a task that takes longer than its limit. The accepted state stays."""
+        if self._confirmed and self._task is not None and time.perf_counter() - self._waited_since > self._limit:
+            self._task.cancel()
 
     def _advance_task(self, seconds: float) -> bool:
         """Continue the task for some seconds; returns whether it is done, and its result taken."""
@@ -263,9 +272,9 @@ class DragLoop:
             if not self._task.advance(seconds):
                 return False
         except BaseException:
-            self._task = self._compares_until = None
+            self._task = None
             raise
-        result, self._task, self._compares_until = self._task.result, None, None
+        result, self._task = self._task.result, None
         self._take(result)
         return True
 
@@ -273,7 +282,7 @@ class DragLoop:
         """End a task without its result. A session is free afterwards; the start need not be waited for."""
         if self._task is not None:
             (self._task.abandon if self.edit is None else self._task.close)()
-        self._task = self._compares_until = None
+        self._task = None
 
     def _begin_work(self) -> bool:
         """Begin the next task, if any: another edit, a solve, or settling after the confirmation."""
@@ -291,14 +300,7 @@ class DragLoop:
             self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
         else:
             self._refinement = Refinement.NONE
-            self._compares_until = time.perf_counter() + COMPARING_TIME
-            self._run(self.edit.confirm_steps(), self._take_confirmed, can_cancel=not self._confirmed)
-
-    def _limit_comparison(self) -> None:
-        """After the confirmation, keep the settled state where the comparison with the edit from the start is slow."""
-        if self._confirmed and self._compares_until is not None and time.perf_counter() > self._compares_until:
-            assert self._task is not None
-            self._task.cancel()
+            self._run(self.edit.confirm_steps(), self._take_confirmed, not self._confirmed, COMPARING_TIME)
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
@@ -420,8 +422,7 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
-        if self._compares_until is not None:
-            self._compares_until = time.perf_counter() + COMPARING_TIME
+        self._waited_since = time.perf_counter()
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending = True

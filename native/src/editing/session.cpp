@@ -73,8 +73,7 @@ class SurfaceSession final : public SessionImplementation {
 
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
     context_.set_weights(std::move(weights), std::move(weight_axes));
-    checked_ = accepted_.controls;
-    restore(Controls(accepted_.controls), Controls(goal_));
+    restore_free(Controls(accepted_.controls), Controls(goal_));
   }
 
   EditResult edit(const Controls& goal, Execution& execution) override {
