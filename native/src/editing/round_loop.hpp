@@ -43,7 +43,7 @@ class RoundLoop {
   auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
-  std::vector<ControlConstraint> linearised(std::vector<Stiv> stivs) const;
+  bool linearise(std::vector<Stiv> stivs);
   void place_surface();
 
   EditCall& call_;
