@@ -4,9 +4,10 @@
     python tests/long/soak.py [--drags 10000] [--moves 2] [--seeds 1] [--json F]
 
 Each stage of the dressing has one session for the whole run. Blocks of random drags alternate with a constant
-block from the same start. The results of the constant block must be identical each time. Its processor time
-shows whether edits become slower. The memory after it is a sample: what is resident, as in a session that nobody
-measures, what of it the allocator has not freed, and what is allocated.
+block from the same start. The results of the constant block must be identical each time. Its processor time in
+the last fifth shows whether edits become slower. New processes run it in between for comparison, since the speed
+of a machine varies within minutes. The memory after it is a sample: what is resident, as in a session that
+nobody measures, what of it the allocator has not freed, and what is allocated.
 
 Growth is that of the median of nine samples. The first nine follow a warm-up of 1,080 drags, the last nine
 are --drags later. Each seed runs in a process of its own.
@@ -19,6 +20,7 @@ import argparse
 import hashlib
 import json
 import os
+import subprocess
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
@@ -39,6 +41,7 @@ from blend_fixtures.scenes.sessions.session import Stage
 
 BLOCK = 60  # drags, over all stages in turn
 WARM_UP = 9  # samples before the first that count
+NEW_PROCESSES, NEW_BLOCKS = 4, 4  # in the last fifth, and the constant blocks in each
 LONGEST = 0.05  # of a drag, in diagonals of the movable surface
 MOST_GROWTH, MOST_DRIFT = 0.005, 0.10
 
@@ -62,6 +65,7 @@ class Account:
     statuses: dict[str, int] = field(default_factory=dict)
     memory: list[Memory] = field(default_factory=list)  # after each repeated block
     repeated_seconds: list[float] = field(default_factory=list)
+    new_seconds: list[float] = field(default_factory=list)  # of constant blocks in new processes
     repeated_results: set[str] = field(default_factory=set)
 
 
@@ -129,17 +133,34 @@ def block(all_scenes: list[Scene], seed: list[int], moves: int, account: Account
     return time.process_time() - begin, ends.hexdigest()
 
 
+def constant_blocks(moves: int) -> list[tuple[float, str]]:
+    """Constant blocks in new sessions: processor seconds, and a hash of the result."""
+    all_scenes = scenes()
+    return [block(all_scenes, [0], moves, Account()) for _ in range(NEW_BLOCKS)]
+
+
+def constant_blocks_of_new_process(moves: int) -> list[tuple[float, str]]:
+    """The same in a process of its own, which leaves no trace in this one's memory."""
+    command = [sys.executable, __file__, "--only-constant-blocks", "--moves", str(moves)]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return [(seconds, ends) for seconds, ends in json.loads(printed)]
+
+
 def run(seed: int, drags: int, moves: int) -> Account:
     """Run blocks until the two windows of samples are this many drags apart."""
     account, all_scenes = Account(), scenes()
     samples = WARM_UP + WINDOW + max(-(-drags // (2 * BLOCK)), WINDOW)
+    beside_new = np.linspace(samples - last_fifth(samples), samples - 1, NEW_PROCESSES).astype(int)
     for number in range(samples):
         block(all_scenes, [seed, number], moves, account)
-        seconds, ends = block(all_scenes, [0], moves, account)
-        account.repeated_seconds.append(seconds)
-        account.repeated_results.add(ends)
+        repeated = [block(all_scenes, [0], moves, account)]
+        account.repeated_seconds.append(repeated[0][0])
         account.memory.append(memory_after(account.drags))
-        print(f"seed {seed}: {report_line(account.memory[-1])}, {seconds:.2f} s", flush=True)
+        if number in beside_new:
+            repeated += constant_blocks_of_new_process(moves)
+            account.new_seconds += [seconds for seconds, _ in repeated[1:]]
+        account.repeated_results.update(ends for _, ends in repeated)
+        print(f"seed {seed}: {report_line(account.memory[-1])}, {repeated[0][0]:.2f} s", flush=True)
     return account
 
 
@@ -149,10 +170,18 @@ def report_line(memory: Memory) -> str:
     return f"{memory.drags} drags: " + "{:.2f} MB resident, {:.2f} without free pages, {:.2f} allocated".format(*sizes)
 
 
+def last_fifth(samples: int) -> int:
+    """Number of samples in the last fifth."""
+    return max(1, samples // 5)
+
+
 def drift_of_time(account: Account) -> float:
-    """Minimum time of the constant block in the last fifth relative to the first; other programs only add time."""
-    count = max(1, len(account.repeated_seconds) // 5)
-    return min(account.repeated_seconds[-count:]) / min(account.repeated_seconds[:count]) - 1
+    """Least time of the constant block in the last fifth, relative to that in new processes at the same time.
+
+    Other programs only add time.
+    """
+    seconds = account.repeated_seconds
+    return min(seconds[-last_fifth(len(seconds)) :]) / min(account.new_seconds) - 1
 
 
 def figures(seed: int, account: Account) -> dict[str, Any]:
@@ -196,7 +225,11 @@ def main() -> int:
     arguments = parser(__doc__.splitlines()[0])
     arguments.add_argument("--seeds", type=int, nargs="+", default=[1])
     arguments.add_argument("--json", type=Path, help="file to write the figures to")
+    arguments.add_argument("--only-constant-blocks", action="store_true", help="print their seconds and results")
     chosen = arguments.parse_args()
+    if chosen.only_constant_blocks:
+        print(json.dumps(constant_blocks(chosen.moves)))
+        return 0
     count = min(len(chosen.seeds), os.cpu_count() or 1)
     with ProcessPoolExecutor(count, get_context("spawn"), max_tasks_per_child=1) as processes:
         rows = [*processes.map(partial(measured, drags=chosen.drags, moves=chosen.moves), chosen.seeds)]
