@@ -35,8 +35,7 @@ std::vector<SparseField> pulled_back(const std::vector<Stiv>& stivs, const Defor
 /// The constraints of consecutive STIVs.
 /// @param rows their gradients over the controls, which are moved from
 std::vector<ControlConstraint> normalised(std::span<const Stiv> stivs, std::span<SparseField> rows, const Controls& p,
-                                          const Metric& metric, const Controls& metric_at,
-                                          const Execution& execution) {
+                                          const Metric& metric, const Controls& metric_at, const Execution& execution) {
   std::vector<SparseField> steps(rows.size());
   execution.for_chunks(static_cast<Index>(rows.size()), steps_per_chunk, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end; ++k) steps[at(k)] = metric.apply_inverse(metric_at, rows[at(k)]);
@@ -83,13 +82,14 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
   return normalised(stivs, rows, p, metric, metric_at, shared);
 }
 
-void ConstraintSet::add(std::vector<ControlConstraint> constraints, const Execution& execution) {
+void ConstraintSet::add(std::vector<ControlConstraint> constraints, const Execution& execution, std::size_t expected) {
   const std::size_t before = size();
   for (ControlConstraint& constraint : constraints) constraints_.push_back(std::move(constraint));
   const auto is_long = [](const ControlConstraint& c) { return c.step.index.size() > longest_kept_step; };
   if (std::none_of(constraints_.begin() + static_cast<std::ptrdiff_t>(before), constraints_.end(), is_long)) return;
   try {
-    complete_gram(execution);
+    reserve_gram(expected);
+    extend_gram(execution);
   } catch (...) {
     keep_first(before);
     throw;
@@ -102,16 +102,21 @@ bool ConstraintSet::has_limit(Index limit) const {
   return std::any_of(constraints_.begin(), constraints_.end(), [&](const auto& c) { return c.limit == limit; });
 }
 
+void ConstraintSet::reserve_gram(std::size_t count) {
+  const auto rows = static_cast<Eigen::Index>(count);
+  if (gram_.rows() < rows) gram_.conservativeResize(rows, rows);
+}
+
 void ConstraintSet::keep_first(std::size_t count) {
   constraints_.resize(std::min(count, size()));
   const auto most = static_cast<Eigen::Index>(size());
-  if (gram_.rows() > most) gram_.conservativeResize(most, most);
+  in_gram_ = std::min(in_gram_, most);
   if (multipliers_.size() > most) multipliers_.conservativeResize(most);
 }
 
 /// Computes the new columns first: the Gram matrix of steps that are not kept must survive an interruption.
-void ConstraintSet::complete_gram(const Execution& execution) {
-  const Eigen::Index before = gram_.rows(), after = static_cast<Eigen::Index>(size()), count = after - before;
+void ConstraintSet::extend_gram(const Execution& execution) {
+  const Eigen::Index before = in_gram_, after = static_cast<Eigen::Index>(size()), count = after - before;
   if (count == 0) return;
   Eigen::MatrixXd columns(after, count);
   const RowControls controls(constraints_);
@@ -129,10 +134,18 @@ void ConstraintSet::complete_gram(const Execution& execution) {
       }
     });
   }
-  gram_.conservativeResize(after, after);
-  gram_.rightCols(count) = columns;
-  gram_.bottomLeftCorner(count, before) = columns.topRows(before).transpose();
-  gram_.bottomRightCorner(count, count).triangularView<Eigen::StrictlyUpper>() = columns.bottomRows(count).transpose();
+  reserve_gram(size());
+  gram_.block(0, before, after, count) = columns;
+  gram_.block(before, 0, count, before) = columns.topRows(before).transpose();
+  gram_.block(before, before, count, count).triangularView<Eigen::StrictlyUpper>() =
+      columns.bottomRows(count).transpose();
+  in_gram_ = after;
+}
+
+/// Makes the Gram matrix that of all constraints.
+void ConstraintSet::complete_gram(const Execution& execution) {
+  extend_gram(execution);
+  if (gram_.rows() > in_gram_) gram_.conservativeResize(in_gram_, in_gram_);
 }
 
 void ConstraintSet::drop_inactive() {
@@ -140,7 +153,7 @@ void ConstraintSet::drop_inactive() {
   for (Eigen::Index r = 0; r < multipliers_.size(); ++r) {
     if (!(multipliers_[r] > 0)) continue;
     active.push_back(r);
-    if (r < gram_.rows()) in_gram.push_back(r);
+    if (r < in_gram_) in_gram.push_back(r);
   }
   Eigen::MatrixXd gram = gram_(in_gram, in_gram);
   Eigen::VectorXd multipliers = multipliers_(active);
@@ -148,6 +161,7 @@ void ConstraintSet::drop_inactive() {
     if (static_cast<Eigen::Index>(k) != active[k]) constraints_[k] = std::move(constraints_[active[k]]);
   constraints_.resize(active.size());
   gram_ = std::move(gram);
+  in_gram_ = gram_.rows();
   multipliers_ = std::move(multipliers);
 }
 
@@ -199,7 +213,7 @@ std::size_t add_constraints(ConstraintSet& set, const std::vector<Stiv>& stivs, 
     for (std::size_t begin = 0; begin < rows.size(); begin += StepTile::width) {
       const std::size_t count = std::min(StepTile::width, rows.size() - begin);
       set.add(normalised({stivs.data() + begin, count}, {rows.data() + begin, count}, p, metric, metric_at, execution),
-              execution);
+              execution, before + rows.size());
     }
   } catch (...) {
     set.keep_first(before);

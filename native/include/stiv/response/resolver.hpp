@@ -37,8 +37,9 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
 /// matrix: those of hundreds of contacts, which move hundreds of coupled controls each, would take megabytes.
 class ConstraintSet {
  public:
+  /// @param expected size after further additions, so that a growing Gram matrix is not copied at each
   /// @throws Interrupted; the set is then as before
-  void add(std::vector<ControlConstraint> constraints, const Execution& execution);
+  void add(std::vector<ControlConstraint> constraints, const Execution& execution, std::size_t expected = 0);
   std::size_t size() const { return constraints_.size(); }
   bool has_limit(Index limit) const;
 
@@ -59,13 +60,16 @@ class ConstraintSet {
                                 const Execution& execution);
 
  private:
+  void reserve_gram(std::size_t count);
+  void extend_gram(const Execution& execution);
   void complete_gram(const Execution& execution);
   bool keeps_all_steps() const;
   Eigen::VectorXd excess_at(const Controls& p) const;
   Controls moved_by_multipliers(const Controls& from, const Metric& metric, const Controls& metric_at) const;
 
   std::vector<ControlConstraint> constraints_;
-  Eigen::MatrixXd gram_;  ///< row_r . step_s of the first constraints
+  Eigen::MatrixXd gram_;      ///< row_r . step_s of the first constraints, with room for more
+  Eigen::Index in_gram_ = 0;  ///< how many these are
   Eigen::VectorXd multipliers_;
 };
 
