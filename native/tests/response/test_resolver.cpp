@@ -226,7 +226,7 @@ TEST_CASE("resolver: long steps that are not kept lead to the optimum, in batche
   }
 }
 
-TEST_CASE("resolver: an interrupted addition leaves the set as it was") {
+TEST_CASE("resolver: an interrupted addition leaves the set unchanged") {
   std::srand(13);
   const Index count = 200;
   const Copy deformation(count);
