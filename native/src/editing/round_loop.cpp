@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
+#include "editing/feasible_state.hpp"
 #include "editing/response_projection.hpp"
 #include "editing/round_volumes.hpp"
 #include "stiv/error.hpp"
@@ -182,7 +183,29 @@ std::optional<Events> RoundLoop::find_events() {
     outcome_.candidate.surface = std::move(*placed);
   else
     place_surface();
+  if (std::optional<Events> near = find_near_events()) return near;
   return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);
+}
+
+/// Events at the beginning of the first step of a large body, which then is the candidate. Nothing if there are none,
+/// or if the step is short. The end of the step may lie so deep in something that a whole side of the body has events.
+std::optional<Events> RoundLoop::find_near_events() {
+  const EditContext& context = call_.context;
+  const bool projects_goal = options_.solver == ConstraintSolver::lcp && options_.accumulated_rounds > 0 &&
+                             progress_.projection == Projection::from_goal;
+  if (progress_.round > 0 || !projects_goal || !context.has_large_body()) return std::nullopt;
+  const double length = context.longest_displacement(call_.accepted.surface, outcome_.candidate.surface);
+  if (length < 2 * context.first_reach()) return std::nullopt;
+  const Controls begin = context.stored(interpolate(call_.accepted.controls, outcome_.candidate.controls,
+                                                    context.first_reach() / length, context.rotation_rows()));
+  std::optional<State> near = feasible_state(context, begin, call_.execution);
+  if (!near) return std::nullopt;
+  std::optional<Events> events =
+      call_.queries.find(call_.accepted.surface, near->surface, outcome_.pair_limit, call_.execution);
+  if (!events || events->empty()) return std::nullopt;
+  progress_.p = begin;  // a call that resumes needs the candidate of the events
+  outcome_.candidate = std::move(*near);
+  return events;
 }
 
 void RoundLoop::place_surface() {

@@ -43,6 +43,7 @@ class RoundLoop {
   auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
+  std::optional<Events> find_near_events();
   std::vector<ControlConstraint> linearised(std::vector<Stiv> stivs) const;
   void place_surface();
 
