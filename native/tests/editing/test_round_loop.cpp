@@ -56,8 +56,9 @@ Run run(const Scene& scene, const StatePredicate& is_diverging) {
   EditReport report;
   EditCall call{context, queries, accepted, progress, report, execution};
   const Controls goal = moved(scene.controls, static_cast<Index>(scene.controls.rows()), Vector3(0.05, 0, -0.45));
-  return {RoundLoop(call, goal, Projection::from_goal, PairLimit::respected, is_diverging).run(),
-          execution.counters.rounds};
+  return {
+      RoundLoop(call, goal, Projection::from_goal, PairLimit::respected, FirstSearch::whole_step, is_diverging).run(),
+      execution.counters.rounds};
 }
 
 }  // namespace
