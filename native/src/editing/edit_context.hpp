@@ -95,7 +95,7 @@ class EditContext {
   void check_positions(const PositionsView& q) const;
 
  private:
-  static constexpr double edges_in_first_reach = 2;
+  static constexpr double edges_in_first_reach = 1;
 
   void set_proximity(const Positions& start, const Controls& controls);
 
