@@ -20,6 +20,10 @@ using Items = std::span<NumberedPoint>;
 constexpr std::size_t window_size = window_capacity;
 constexpr std::size_t known_window_size = window_size / 2;
 
+/// Blocks from which a group has subtrees of its own. Nodes with blocks of several groups are large once these have
+/// moved relative to each other.
+constexpr std::size_t large_group = 1024;
+
 enum class Given { unordered, in_order };
 
 /// A curve, or an order that is known already, replaces the first levels of median splits, which cost the most and
@@ -54,47 +58,67 @@ void append_blocks(std::span<const NumberedPoint> points, std::size_t block, std
   places.resize((places.size() + block - 1) / block * block, -1);
 }
 
-/// Appends the center of each block.
-void append_centres(std::span<const NumberedPoint> points, std::size_t block, Points& centres) {
-  for (std::size_t first = 0; first < points.size(); first += block) {
-    Eigen::AlignedBox3f box;
-    for (const NumberedPoint& point : points.subspan(first, std::min(block, points.size() - first)))
-      box.extend(Eigen::Map<const Eigen::Vector3f>(point.position.data()));
-    const Eigen::Vector3f centre = box.center();
-    centres.push_back({{centre[0], centre[1], centre[2]}, static_cast<Index>(centres.size())});
-  }
-}
+/// The blocks of small groups, of which nodes may hold several, and those of large groups, which follow.
+class BlockList {
+ public:
+  explicit BlockList(std::size_t block) : block_(block) {}
 
-/// Sorts blocks of several groups, given group by group.
-std::vector<Index> order_blocks(const std::vector<Index>& places, Points centres, std::size_t block,
-                                const Execution& execution) {
-  order_spatially(centres, block, Given::unordered, execution);
-  std::vector<Index> order;
-  order.reserve(places.size());
-  for (const NumberedPoint& centre : centres) {
-    const auto first = places.begin() + static_cast<std::ptrdiff_t>(block) * centre.number;
-    order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block));
+  void add(std::span<const NumberedPoint> group) {
+    const bool is_large = group.size() >= large_group * block_;
+    append_blocks(group, block_, is_large ? of_large_ : of_small_);
+    if (!is_large) append_centres(group);
+    small_groups_ += is_large ? 0 : 1;
   }
-  return order;
-}
+
+  std::vector<Index> ordered(const Execution& execution) && {
+    std::vector<Index> order = small_groups_ > 1 ? ordered_small(execution) : std::move(of_small_);
+    order.insert(order.end(), of_large_.begin(), of_large_.end());
+    return order;
+  }
+
+ private:
+  /// Appends the center of each block.
+  void append_centres(std::span<const NumberedPoint> points) {
+    for (std::size_t first = 0; first < points.size(); first += block_) {
+      Eigen::AlignedBox3f box;
+      for (const NumberedPoint& point : points.subspan(first, std::min(block_, points.size() - first)))
+        box.extend(Eigen::Map<const Eigen::Vector3f>(point.position.data()));
+      const Eigen::Vector3f centre = box.center();
+      centres_.push_back({{centre[0], centre[1], centre[2]}, static_cast<Index>(centres_.size())});
+    }
+  }
+
+  std::vector<Index> ordered_small(const Execution& execution) {
+    order_spatially(centres_, block_, Given::unordered, execution);
+    std::vector<Index> order;
+    order.reserve(of_small_.size() + of_large_.size());
+    for (const NumberedPoint& centre : centres_) {
+      const auto first = of_small_.begin() + static_cast<std::ptrdiff_t>(block_) * centre.number;
+      order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block_));
+    }
+    return order;
+  }
+
+  std::size_t block_;
+  std::vector<Index> of_small_, of_large_;
+  Points centres_;  // of the blocks of small groups
+  int small_groups_ = 0;
+};
 
 std::vector<Index> block_order(Points points, Given given, const std::vector<Index>& groups, std::size_t block,
                                const Execution& execution) {
   const auto group = [&](const NumberedPoint& point) { return groups.empty() ? 0 : groups[point.number]; };
   sort_by_group(points, groups);
-  std::vector<Index> places;
-  places.reserve(points.size() + block);
-  Points centres;
+  BlockList blocks(block);
   for (auto begin = points.begin(); begin != points.end();) {
     const auto differs = [&](const NumberedPoint& point) { return group(point) != group(*begin); };
     const auto end = groups.empty() ? points.end() : std::find_if(begin, points.end(), differs);
     const Items items(begin, end);
     order_spatially(items, block, given, execution);
-    append_blocks(items, block, places);
-    if (begin != points.begin() || end != points.end()) append_centres(items, block, centres);
+    blocks.add(items);
     begin = end;
   }
-  return centres.empty() ? places : order_blocks(places, std::move(centres), block, execution);
+  return std::move(blocks).ordered(execution);
 }
 
 }  // namespace
