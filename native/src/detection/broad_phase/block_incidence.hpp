@@ -8,8 +8,8 @@
 
 namespace stiv {
 
-/// Finds the blocks of a tree that hold a primitive with some vertex, among the first vertices. Most primitives at a vertex share a block, so
-/// there are far fewer blocks than primitives at it.
+/// Finds the blocks of a tree that hold a primitive with some vertex, among the first vertices. Most primitives at a
+/// vertex share a block, so there are far fewer blocks than primitives at it.
 class BlockIncidence {
  public:
   /// @param corners (blocks, block_size) vertices of each block's primitives, -1: none
