@@ -75,7 +75,7 @@ bool poll(const Condition& holds) {
 
 int usable_processors() { return limited(std::max(1, allowed_processors())); }
 
-ThreadPool::ThreadPool(int count) {
+ThreadPool::ThreadPool(int count) : polls_(count < allowed_processors()) {
   threads_.reserve(static_cast<std::size_t>(count));
   try {
     for (int k = 0; k < count; ++k) threads_.emplace_back([this] { wait_for_work(); });
@@ -107,7 +107,7 @@ void ThreadPool::run(const std::function<void()>& work) {
     work_ = nullptr;
   }
   const auto have_ended = [this] { return busy_ == 0; };
-  if (poll(have_ended)) return;
+  if (polls_ && poll(have_ended)) return;
   std::unique_lock lock(mutex_);
   ended_.wait(lock, have_ended);
 }
@@ -115,7 +115,7 @@ void ThreadPool::run(const std::function<void()>& work) {
 void ThreadPool::wait_for_work() {
   for (std::uint64_t seen = 0;;) {
     const auto is_called = [&] { return number_ != seen; };
-    const bool is_awake = poll(is_called);
+    const bool is_awake = polls_ && poll(is_called);
     std::unique_lock lock(mutex_);
     if (!is_awake) begun_.wait(lock, is_called);
     seen = number_;

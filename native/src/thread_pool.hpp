@@ -17,7 +17,7 @@ namespace stiv {
 int usable_processors();
 
 /// Threads that help the calling thread, started once: starting them takes longer than many loops. They await the next
-/// loop awake, and fall asleep if it does not begin soon.
+/// loop awake, and fall asleep if it does not begin soon; with fewer processors than threads, at once.
 class ThreadPool {
  public:
   /// Starts fewer threads, or none, if the system refuses them.
@@ -33,6 +33,7 @@ class ThreadPool {
  private:
   void wait_for_work();
 
+  bool polls_;  // each thread has a processor: none takes the time of another
   std::mutex mutex_;
   std::condition_variable begun_, ended_;
   const std::function<void()>* work_ = nullptr;  // null: no work is open
