@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cstdlib>
 #include <exception>
 #include <string>
 
 #if defined(__linux__)
 #include <sched.h>
+#endif
+#if defined(__x86_64__) || defined(_M_X64)
+#include <immintrin.h>
 #endif
 
 #include "stiv/error.hpp"
@@ -39,11 +43,39 @@ int limited(int processors) {
   return std::min(processors, most);
 }
 
+/// How long a thread polls before it sleeps. To wake it up takes as long as many loops, and most loops of a call follow
+/// each other within this time.
+constexpr std::chrono::microseconds polling_time(100);
+
+/// Lets the other thread of the same core work, and saves power.
+void pause() {
+#if defined(__x86_64__) || defined(_M_X64)
+  _mm_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+/// Waits a short time for a condition. Returns whether it holds.
+template <class Condition>
+bool poll(const Condition& holds) {
+  using Clock = std::chrono::steady_clock;
+  constexpr int tries_per_look = 16;  // at the clock
+  const Clock::time_point end = Clock::now() + polling_time;
+  do {
+    for (int k = 0; k < tries_per_look; ++k) {
+      if (holds()) return true;
+      pause();
+    }
+  } while (Clock::now() < end);
+  return false;
+}
+
 }  // namespace
 
 int usable_processors() { return limited(std::max(1, allowed_processors())); }
 
-ThreadPool::ThreadPool(int count) {
+ThreadPool::ThreadPool(int count) : polls_(count < allowed_processors()) {
   threads_.reserve(static_cast<std::size_t>(count));
   try {
     for (int k = 0; k < count; ++k) threads_.emplace_back([this] { wait_for_work(); });
@@ -56,6 +88,7 @@ ThreadPool::~ThreadPool() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
+    ++number_;
   }
   begun_.notify_all();
   for (std::thread& thread : threads_) thread.join();
@@ -69,19 +102,26 @@ void ThreadPool::run(const std::function<void()>& work) {
   }
   begun_.notify_all();
   work();
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = nullptr;
+  }
+  const auto have_ended = [this] { return busy_ == 0; };
+  if (polls_ && poll(have_ended)) return;
   std::unique_lock lock(mutex_);
-  work_ = nullptr;
-  ended_.wait(lock, [this] { return busy_ == 0; });
+  ended_.wait(lock, have_ended);
 }
 
 void ThreadPool::wait_for_work() {
-  std::uint64_t done = 0;
-  std::unique_lock lock(mutex_);
-  for (;;) {
-    begun_.wait(lock, [&] { return closing_ || (work_ != nullptr && number_ != done); });
+  for (std::uint64_t seen = 0;;) {
+    const auto is_called = [&] { return number_ != seen; };
+    const bool is_awake = polls_ && poll(is_called);
+    std::unique_lock lock(mutex_);
+    if (!is_awake) begun_.wait(lock, is_called);
+    seen = number_;
     if (closing_) return;
+    if (work_ == nullptr) continue;  // it has ended already
     const std::function<void()>& work = *work_;
-    done = number_;
     ++busy_;
     lock.unlock();
     work();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -15,8 +16,8 @@ namespace stiv {
 /// @throws InputError if STIV_THREADS is not a positive integer
 int usable_processors();
 
-/// Threads that help the calling thread, started once and asleep between loops: starting them takes longer than many
-/// loops.
+/// Threads that help the calling thread, started once: starting them takes longer than many loops. They await the next
+/// loop awake, and fall asleep if it does not begin soon; with fewer processors than threads, at once.
 class ThreadPool {
  public:
   /// Starts fewer threads, or none, if the system refuses them.
@@ -25,18 +26,20 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls `work` in the calling thread and in the threads that wake up before it ends there; returns when all have
+  /// Calls `work` in the calling thread and in the threads that come before it ends there; returns when all have
   /// ended. It must not throw, and distributes its chunks itself. One call at a time.
   void run(const std::function<void()>& work);
 
  private:
   void wait_for_work();
 
+  bool polls_;  // each thread has a processor: none takes the time of another
   std::mutex mutex_;
   std::condition_variable begun_, ended_;
   const std::function<void()>* work_ = nullptr;  // null: no work is open
-  std::uint64_t number_ = 0;                     // of the work, so that no thread does it twice
-  int busy_ = 0;
+  // The mutex is held while these change. Threads that poll read them without it.
+  std::atomic<std::uint64_t> number_ = 0;  // of the work, so that no thread does it twice
+  std::atomic<int> busy_ = 0;
   bool closing_ = false;
   std::vector<std::thread> threads_;
 };

@@ -141,6 +141,7 @@ PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& d
                                const Execution& execution) {
   const double increment = context.longest_displacement(drag.followed.surface, aim.surface);
   const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
+  if (context.has_large_body()) return {pulls * context.pull_distance(), 1, 1};
   return {context.pull_distance(), static_cast<int>(pulls), poor_pulls_before_end(execution)};
 }
 

@@ -45,7 +45,8 @@ struct PullLimits {
 int poor_pulls_before_end(const Execution& execution);
 
 /// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
-/// returns from deep inside a wall lifts the shape off the wall, and pulls move it back.
+/// returns from deep inside a wall lifts the shape off the wall, and pulls move it back. With a large body, one pull
+/// goes as far as all of them together: each would need a search and a test of the whole body.
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
                                const Execution& execution);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "editing/effective_separation.hpp"
+#include "editing/large_body.hpp"
 #include "editing/validation.hpp"
 #include "stiv/coordinate_range.hpp"
 #include "stiv/error.hpp"
@@ -74,6 +75,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obsta
   centred(q, rows, execution);
   reference_ = std::move(rows.with_room_for(static_cast<Index>(q.rows())));
   set_proximity(q, start);
+  large_body_edge_ = mean_edge_of_large_bodies(*surface_, q);
 }
 
 void EditContext::set_proximity(const Positions& start, const Controls& controls) {

@@ -59,6 +59,10 @@ class EditContext {
   double far_distance() const { return 0.25 * diagonal_; }
   /// Largest displacement of a vertex of the goal in a pull; 0: no pulls.
   double pull_distance() const { return options_.pull_limit * diagonal_; }
+  /// Does a large body move? Calls then take steps that need fewer searches.
+  bool has_large_body() const { return large_body_edge_ > 0; }
+  /// With a large body, the longest motion in which a search that begins from nothing looks for contacts.
+  double first_reach() const { return edges_in_first_reach * large_body_edge_; }
   /// @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
   /// Factors the metric again if the Jacobian was replaced, and returns whether it was.
@@ -91,6 +95,8 @@ class EditContext {
   void check_positions(const PositionsView& q) const;
 
  private:
+  static constexpr double edges_in_first_reach = 1;
+
   void set_proximity(const Positions& start, const Controls& controls);
 
   std::shared_ptr<const Surface> surface_;
@@ -106,6 +112,7 @@ class EditContext {
   Eigen::RowVector3d centre_ = Eigen::RowVector3d::Zero();
   double diagonal_ = 0;  ///< of the moving vertices
   double least_separation_ = 0;
+  double large_body_edge_ = 0;  ///< mean length; 0: no large body
   std::optional<BodySeparations> body_separations_;
   std::optional<BodyPairSet> overlapping_;
   Positions reference_;  ///< the start with the obstacles, centered

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "stiv/error.hpp"
+#include "thread_priority.hpp"
 
 namespace stiv {
 
@@ -19,6 +20,7 @@ NextSession::NextSession(const Eigen::AlignedBox3d& box, int threads, Make make)
   if (threads == 1) return;
   made_ = std::async(std::launch::async, [this] {
     const FloatingPointScope floating_point;
+    lower_thread_priority();
     execution_.set_owner(refuse_calls);
     return make_(execution_);
   });

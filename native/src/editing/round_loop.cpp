@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "editing/control_interpolation.hpp"
+#include "editing/feasible_state.hpp"
 #include "editing/response_projection.hpp"
 #include "editing/round_volumes.hpp"
 #include "stiv/error.hpp"
@@ -55,9 +56,10 @@ double fraction_to_resume(const EditCall& call, Projection projection, double fr
 }  // namespace
 
 RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection, PairLimit pair_limit,
-                     const StatePredicate& is_diverging)
+                     FirstSearch first, const StatePredicate& is_diverging)
     : call_(call),
       options_(call.context.options()),
+      first_(first),
       is_diverging_(is_diverging),
       progress_(progress_toward(call, goal, projection)) {
   outcome_.pair_limit = pair_limit;
@@ -181,7 +183,30 @@ std::optional<Events> RoundLoop::find_events() {
     outcome_.candidate.surface = std::move(*placed);
   else
     place_surface();
+  if (std::optional<Events> near = find_near_events()) return near;
   return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);
+}
+
+/// Events at the beginning of the step of a large body, which then is the candidate. Nothing if there are none, or if
+/// the step is short or not the first.
+std::optional<Events> RoundLoop::find_near_events() {
+  const EditContext& context = call_.context;
+  const bool projects_goal = options_.solver == ConstraintSolver::lcp && options_.accumulated_rounds > 0 &&
+                             progress_.projection == Projection::from_goal;
+  const bool is_first = progress_.round == 0 && first_ == FirstSearch::near_start;
+  if (!is_first || !projects_goal || !context.has_large_body()) return std::nullopt;
+  const double length = context.longest_displacement(call_.accepted.surface, outcome_.candidate.surface);
+  if (length < 2 * context.first_reach()) return std::nullopt;
+  const Controls begin = context.stored(interpolate(call_.accepted.controls, outcome_.candidate.controls,
+                                                    context.first_reach() / length, context.rotation_rows()));
+  std::optional<State> near = feasible_state(context, begin, call_.execution);
+  if (!near) return std::nullopt;
+  std::optional<Events> events =
+      call_.queries.find(call_.accepted.surface, near->surface, outcome_.pair_limit, call_.execution);
+  if (!events || events->empty()) return std::nullopt;
+  progress_.p = begin;  // a call that resumes needs the candidate of the events
+  outcome_.candidate = std::move(*near);
+  return events;
 }
 
 void RoundLoop::place_surface() {
@@ -189,13 +214,13 @@ void RoundLoop::place_surface() {
       at_feasible_candidate([&] { return call_.context.surface_at(outcome_.candidate.controls, call_.execution); });
 }
 
-RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Projection projection, double& fraction,
-                                     const StatePredicate& is_diverging) {
+RoundOutcome run_rounds_within_reach(EditCall& call, const Controls& goal, Projection projection, FirstSearch first,
+                                     double& fraction, const StatePredicate& is_diverging) {
   const auto goal_at = [&](double part) {
     return interpolate(call.accepted.controls, goal, part, call.context.rotation_rows());
   };
   const auto run = [&](PairLimit limit) {
-    return RoundLoop(call, goal_at(fraction), projection, limit, is_diverging).run();
+    return RoundLoop(call, goal_at(fraction), projection, limit, first, is_diverging).run();
   };
   for (fraction = fraction_to_resume(call, projection, std::min(1.0, 2 * fraction), goal_at);
        fraction >= smallest_fraction; fraction /= 2) {

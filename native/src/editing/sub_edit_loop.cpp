@@ -69,7 +69,8 @@ class SubEditLoop {
 };
 
 RoundOutcome SubEditLoop::rounds(Projection projection, const StatePredicate& is_diverging) {
-  return run_rounds_within_reach(call_, aim_.controls, projection, fraction_, is_diverging);
+  const FirstSearch first = aim_.must_improve ? FirstSearch::near_start : FirstSearch::whole_step;
+  return run_rounds_within_reach(call_, aim_.controls, projection, first, fraction_, is_diverging);
 }
 
 /// The first solution of an edit. Accumulated constraints were linearised at different candidates and may overshoot

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "editing/sessions.hpp"
+#include "stiv/acceptance/intersections.hpp"
 #include "stiv/deformation/lattice.hpp"
 
 using namespace stiv;
@@ -14,10 +15,12 @@ using namespace stiv::tests;
 namespace {
 
 /// A sheet in a lattice pressed onto a bowl, which takes some rounds.
-Scene sheet_over_bowl() {
+/// @param cells of the sheet along each side
+/// @param height of the sheet; 0.1 touches the bowl
+Scene sheet_over_bowl(Index cells = 12, double height = 0.3) {
   Positions q(0, 3);
   Triangles triangles(0, 3);
-  append_sheet(q, triangles, 12, 1, Vector3(0.03, 0.02, 0.3));
+  append_sheet(q, triangles, cells, 1, Vector3(0.03, 0.02, height));
   const auto first = static_cast<Index>(q.rows());
   append_sheet(q, triangles, 17, 2, Vector3::Zero());
   for (Index vertex = first; vertex < q.rows(); ++vertex)
@@ -41,10 +44,11 @@ Scene sheet_over_bowl() {
 
 struct Run {
   RoundOutcome outcome;
-  std::int64_t rounds = 0;
+  std::int64_t rounds = 0, events = 0;
 };
 
-Run run(const Scene& scene, const StatePredicate& is_diverging) {
+Run run(const Scene& scene, const StatePredicate& is_diverging, FirstSearch first = FirstSearch::whole_step,
+        PairLimit limit = PairLimit::respected) {
   EditOptions options;
   options.max_rounds = 40;
   const EditContext context(scene.surface, Positions(0, 3), scene.deformation, scene.controls, options, Execution(1));
@@ -56,8 +60,8 @@ Run run(const Scene& scene, const StatePredicate& is_diverging) {
   EditReport report;
   EditCall call{context, queries, accepted, progress, report, execution};
   const Controls goal = moved(scene.controls, static_cast<Index>(scene.controls.rows()), Vector3(0.05, 0, -0.45));
-  return {RoundLoop(call, goal, Projection::from_goal, PairLimit::respected, is_diverging).run(),
-          execution.counters.rounds};
+  return {RoundLoop(call, goal, Projection::from_goal, limit, first, is_diverging).run(), execution.counters.rounds,
+          execution.counters.events};
 }
 
 }  // namespace
@@ -85,4 +89,24 @@ TEST_CASE("round loop: rounds are given up where that is wished") {
   CHECK(run_up.outcome.given_up);
   CHECK(!run_up.outcome.clear);
   CHECK(run_up.rounds == 6);
+}
+
+TEST_CASE("round loop: a large body that goes deep finds fewer contacts if it searches near the start first") {
+  const Scene scene = sheet_over_bowl(130, 0.103);
+  const Run whole = run(scene, {}, FirstSearch::whole_step, PairLimit::ignored),
+            near = run(scene, {}, FirstSearch::near_start, PairLimit::ignored);
+  CHECK(whole.outcome.clear);
+  CHECK(near.outcome.clear);
+  CHECK(near.events > 0);
+  CHECK(near.events < whole.events);
+  IntersectionTest test(scene.surface);
+  Execution execution(1);
+  CHECK(test.find(near.outcome.candidate.surface, execution).empty());
+}
+
+TEST_CASE("round loop: for a small body, it does not matter where the search begins") {
+  const Scene scene = sheet_over_bowl();
+  const Run whole = run(scene, {}), near = run(scene, {}, FirstSearch::near_start);
+  CHECK(near.events == whole.events);
+  CHECK(near.outcome.candidate.controls == whole.outcome.candidate.controls);
 }

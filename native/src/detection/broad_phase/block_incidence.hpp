@@ -8,8 +8,8 @@
 
 namespace stiv {
 
-/// Finds the blocks of a tree that hold a primitive with some vertex. Most primitives at a vertex share a block, so
-/// there are far fewer blocks than primitives at it.
+/// Finds the blocks of a tree that hold a primitive with some vertex, among the first vertices. Most primitives at a
+/// vertex share a block, so there are far fewer blocks than primitives at it.
 class BlockIncidence {
  public:
   /// @param corners (blocks, block_size) vertices of each block's primitives, -1: none
@@ -35,7 +35,8 @@ class BlockIncidence {
     std::vector<Index> last(first_.size(), -1);  // block of each vertex
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
       const auto block = static_cast<Index>(corner / block_size);
-      if (corners[corner] < 0 || last[corners[corner]] == block) continue;
+      const bool is_listed = corners[corner] >= 0 && corners[corner] < static_cast<Index>(first_.size()) - 1;
+      if (!is_listed || last[corners[corner]] == block) continue;
       last[corners[corner]] = block;
       visit(static_cast<std::size_t>(corners[corner]), block);
     }

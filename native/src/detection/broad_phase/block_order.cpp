@@ -20,6 +20,10 @@ using Items = std::span<NumberedPoint>;
 constexpr std::size_t window_size = window_capacity;
 constexpr std::size_t known_window_size = window_size / 2;
 
+/// Primitives from which a group has subtrees of its own: the edges of a large body. Nodes with blocks of several
+/// groups become large as these move apart.
+constexpr std::size_t large_group = 3 << 14;
+
 enum class Given { unordered, in_order };
 
 /// A curve, or an order that is known already, replaces the first levels of median splits, which cost the most and
@@ -54,47 +58,71 @@ void append_blocks(std::span<const NumberedPoint> points, std::size_t block, std
   places.resize((places.size() + block - 1) / block * block, -1);
 }
 
-/// Appends the center of each block.
-void append_centres(std::span<const NumberedPoint> points, std::size_t block, Points& centres) {
-  for (std::size_t first = 0; first < points.size(); first += block) {
-    Eigen::AlignedBox3f box;
-    for (const NumberedPoint& point : points.subspan(first, std::min(block, points.size() - first)))
-      box.extend(Eigen::Map<const Eigen::Vector3f>(point.position.data()));
-    const Eigen::Vector3f centre = box.center();
-    centres.push_back({{centre[0], centre[1], centre[2]}, static_cast<Index>(centres.size())});
-  }
-}
+/// Blocks of primitives, with the center of each.
+class BlockList {
+ public:
+  explicit BlockList(std::size_t block) : block_(block) {}
 
-/// Sorts blocks of several groups, given group by group.
-std::vector<Index> order_blocks(const std::vector<Index>& places, Points centres, std::size_t block,
-                                const Execution& execution) {
-  order_spatially(centres, block, Given::unordered, execution);
-  std::vector<Index> order;
-  order.reserve(places.size());
-  for (const NumberedPoint& centre : centres) {
-    const auto first = places.begin() + static_cast<std::ptrdiff_t>(block) * centre.number;
-    order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block));
+  void add(std::span<const NumberedPoint> points) {
+    append_blocks(points, block_, places_);
+    for (std::size_t first = 0; first < points.size(); first += block_)
+      add_centre(points.subspan(first, std::min(block_, points.size() - first)));
   }
+
+  /// Appends the places of the blocks in a spatial order.
+  void append_ordered(const Execution& execution, std::vector<Index>& order) {
+    order_spatially(centres_, block_, Given::unordered, execution);
+    for (const NumberedPoint& centre : centres_) {
+      const auto first = places_.begin() + static_cast<std::ptrdiff_t>(block_) * centre.number;
+      order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block_));
+    }
+  }
+
+ private:
+  void add_centre(std::span<const NumberedPoint> points) {
+    Eigen::AlignedBox3f box;
+    for (const NumberedPoint& point : points) box.extend(Eigen::Map<const Eigen::Vector3f>(point.position.data()));
+    const Eigen::Vector3f centre = box.center();
+    centres_.push_back({{centre[0], centre[1], centre[2]}, static_cast<Index>(centres_.size())});
+  }
+
+  std::size_t block_;
+  std::vector<Index> places_;
+  Points centres_;
+};
+
+/// The order of several groups, given one after the other.
+std::vector<Index> order_groups(Items points, Given given, const std::vector<Index>& groups, std::size_t block,
+                                const Execution& execution) {
+  std::vector<Index> order;
+  order.reserve(points.size() + block);
+  BlockList small(block);
+  for (auto begin = points.begin(); begin != points.end();) {
+    const auto end = std::find_if(begin, points.end(), [&](const NumberedPoint& point) {
+      return groups[at(point.number)] != groups[at(begin->number)];
+    });
+    const Items group(begin, end);
+    order_spatially(group, block, given, execution);
+    BlockList large(block);
+    (group.size() < large_group ? small : large).add(group);
+    large.append_ordered(execution, order);
+    begin = end;
+  }
+  small.append_ordered(execution, order);
   return order;
 }
 
 std::vector<Index> block_order(Points points, Given given, const std::vector<Index>& groups, std::size_t block,
                                const Execution& execution) {
-  const auto group = [&](const NumberedPoint& point) { return groups.empty() ? 0 : groups[point.number]; };
   sort_by_group(points, groups);
+  const bool is_one_group =
+      groups.empty() || points.empty() || groups[at(points.front().number)] == groups[at(points.back().number)];
+  if (!is_one_group) return order_groups(points, given, groups, block, execution);
+  order_spatially(points, block, given, execution);
   std::vector<Index> places;
   places.reserve(points.size() + block);
-  Points centres;
-  for (auto begin = points.begin(); begin != points.end();) {
-    const auto differs = [&](const NumberedPoint& point) { return group(point) != group(*begin); };
-    const auto end = groups.empty() ? points.end() : std::find_if(begin, points.end(), differs);
-    const Items items(begin, end);
-    order_spatially(items, block, given, execution);
-    append_blocks(items, block, places);
-    if (begin != points.begin() || end != points.end()) append_centres(items, block, centres);
-    begin = end;
-  }
-  return centres.empty() ? places : order_blocks(places, std::move(centres), block, execution);
+  append_blocks(points, block, places);
+  return places;
 }
 
 }  // namespace

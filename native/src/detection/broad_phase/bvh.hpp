@@ -94,7 +94,7 @@ class Bvh {
                             const Execution& execution);
   /// The same for the primitives with a corner among `changed`. The cost does not depend on the others.
   void refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices);
-  /// Allocates what the first refit of some corners would allocate.
+  /// Allocates what the first refit of some corners would allocate, if only the first vertices ever change.
   void prepare_refit_some_corners(Index vertex_count);
   /// For a tree whose corners are names: the vertices of each block, (blocks, size, width), -1: none.
   std::vector<Index> block_corners(const CornerRows& rows) const;

@@ -46,7 +46,7 @@ class BvhSource final : public CandidateSource {
     vertices_.prepare(start, execution);
     const auto prepare = [&](auto& tree) {
       tree.prepare(start, execution);
-      tree.prepare_later_updates();
+      tree.prepare_later_updates(swept_.changing());
     };
     execution.for_chunks(2, 1, [&](Index, Index, Index kind) {  // most of a tree is built on one thread
       if (kind == 0)
@@ -54,7 +54,7 @@ class BvhSource final : public CandidateSource {
       else
         prepare(faces_);
     });
-    vertices_.prepare_later_updates();
+    vertices_.prepare_later_updates(swept_.changing());
     vertices_.drop_curve();
   }
 

@@ -29,7 +29,7 @@ class PrimitiveTree {
   void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one at the latest, so that
     // memory does not grow late in a session.
-    if (std::exchange(has_boxes_, true)) tree_->prepare_refit_some_corners(surface_.vertex_count());
+    if (std::exchange(has_boxes_, true)) prepare_later_updates(swept.changing());
     if (!tree_ || (change == SweptVertices::Change::all && is_spoiled(step.start))) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
@@ -45,8 +45,8 @@ class PrimitiveTree {
   void prepare(const PositionsView& start, const Execution& execution) {
     if (!tree_) build(start, execution);
   }
-  /// Allocates what the second update would allocate.
-  void prepare_later_updates() { tree_->prepare_refit_some_corners(surface_.vertex_count()); }
+  /// Allocates what the second update would allocate, if only the first vertices ever change.
+  void prepare_later_updates(Index changing) { tree_->prepare_refit_some_corners(changing); }
 
   const Bvh& tree() const { return *tree_; }
 

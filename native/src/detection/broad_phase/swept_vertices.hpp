@@ -21,6 +21,8 @@ class SweptVertices {
 
   /// As CandidateSource.
   void set_resting(Index count) { resting_ = count; }
+  /// The number of the first vertices, which may change.
+  Index changing() const { return surface_.vertex_count() - resting_; }
 
   /// Whether boxes that contain the step may be reused.
   enum class Reuse { allowed, forbidden };

@@ -27,5 +27,8 @@ TEST_CASE("block incidence: each block at a vertex once, those of a run of verti
       }
     const auto found = incidence.blocks_at(begin, end);
     CHECK(std::multiset<Index>(found.begin(), found.end()) == expected);
+    const BlockIncidence of_first(corners, block_size, end);
+    const auto found_among_first = of_first.blocks_at(begin, end);
+    CHECK(std::multiset<Index>(found_among_first.begin(), found_among_first.end()) == expected);
   }
 }

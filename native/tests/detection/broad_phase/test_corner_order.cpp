@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <random>
 
@@ -86,4 +87,25 @@ TEST_CASE("block order along a given order: every primitive once, one group in e
                 of_group[static_cast<std::size_t>(order[place / 8 * 8])]);
     }
   }
+}
+
+TEST_CASE("block order: large groups have consecutive places, though they lie in the same region") {
+  constexpr Index large = 3 << 14, small = 500, count = 2 * large + 2 * small;
+  const std::vector<NumberedPoint> centres = random_points(count);
+  std::vector<Index> groups(static_cast<std::size_t>(count), 0);
+  for (Index k = 0; k < 2 * large; ++k) groups[static_cast<std::size_t>(k)] = 1 + k % 2;
+  for (Index k = 0; k < small; ++k) groups[static_cast<std::size_t>(count - 1 - k)] = 3;
+  const std::vector<Index> order = block_order(centres, groups, 8, Execution(1));
+  CHECK(lists_each_once(order, count));
+  CHECK(order == block_order(centres, groups, 8, Execution(3)));
+  std::array<int, 4> runs{};
+  for (std::size_t place = 0; place < order.size(); place += 8) {
+    const Index group = groups[static_cast<std::size_t>(order[place])];
+    const bool begins = place == 0 || group != groups[static_cast<std::size_t>(order[place - 8])];
+    runs[static_cast<std::size_t>(group)] += begins;
+  }
+  CHECK(runs[1] == 1);
+  CHECK(runs[2] == 1);
+  CHECK(runs[0] > 2);  // small groups share nodes
+  CHECK(runs[3] > 2);
 }
