@@ -263,21 +263,62 @@ HWY_INLINE hn::Vec<Ints> chosen(const Index* numbers, hn::Vec<Ints> places) {
 #endif
 }
 
+/// Where the numbers of pairs go: each array gets a whole vector.
+struct PairSlots {
+  Index *first, *second;
+  Index* corners[4];
+
+  HWY_INLINE explicit PairSlots(PairBuffer& found) : first(found.first.data()), second(found.second.data()) {
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = found.corners[k].data();
+  }
+};
+
+/// Writes the corners of a vertex and some faces.
+HWY_INLINE void write_face_corners(const Index* vertex, const Index* faces, hn::Vec<Ints> lanes, const PairSlots& slots,
+                                   std::size_t at) {
+  const Ints i;
+  hn::StoreU(hn::Set(i, *vertex), i, slots.corners[0] + at);
+  for (std::size_t k = 0; k < 3; ++k) hn::StoreU(chosen(faces + k * width, lanes), i, slots.corners[k + 1] + at);
+}
+
+/// Writes the corners of an edge and some others, those of the lower one first.
+HWY_INLINE void write_edge_corners(const Index* edge, const Index* others, hn::Vec<Ints> lanes,
+                                   hn::Mask<Ints> edge_is_lower, const PairSlots& slots, std::size_t at) {
+  const Ints i;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto own = hn::Set(i, edge[k * width]), other = chosen(others + k * width, lanes);
+    hn::StoreU(hn::IfThenElse(edge_is_lower, own, other), i, slots.corners[k] + at);
+    hn::StoreU(hn::IfThenElse(edge_is_lower, other, own), i, slots.corners[k + 2] + at);
+  }
+}
+
+/// The corners of the primitive at a place of the blocks: one in each array of a block.
+template <Index size>
+HWY_INLINE const Index* corners_at(const TreeView& tree, Index place) {
+  const auto block = static_cast<std::size_t>(place) / width;
+  return tree.corners + block * width * static_cast<std::size_t>(size) + static_cast<std::size_t>(place) % width;
+}
+
 /// Passes on the pairs of a list.
-template <std::size_t most>
+template <Index size_a, Index size_b, std::size_t most>
 HWY_INLINE void pass_on(const Traversal& t, const HitList<most>& hits) {
   const Ints i;
   const hn::Rebind<std::uint8_t, Ints> bytes;
   t.reserve(hits.count);
+  const PairSlots slots(*t.found);
   std::size_t count = t.found->count;
   for (std::size_t hit = 0; hit < hits.count; ++hit) {
     const auto first = hn::Set(i, t.a.order[hits.place[hit]]);
-    const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(hits.other[hit]) * Bvh::width;
-    const std::uint8_t* const lanes = lanes_of_bits[hits.lanes[hit]].data();
+    const Index other = hits.other[hit] * Bvh::width;
     for (std::size_t lane = 0; lane < width; lane += hn::Lanes(i)) {
-      hn::StoreU(first, i, t.found->first.data() + count + lane);
-      hn::StoreU(chosen(order, hn::PromoteTo(i, hn::LoadU(bytes, lanes + lane))), i,
-                 t.found->second.data() + count + lane);
+      const auto lanes = hn::PromoteTo(i, hn::LoadU(bytes, lanes_of_bits[hits.lanes[hit]].data() + lane));
+      const auto second = chosen(t.b.order + other, lanes);
+      hn::StoreU(first, i, slots.first + count + lane);
+      hn::StoreU(second, i, slots.second + count + lane);
+      const Index *const own = corners_at<size_a>(t.a, hits.place[hit]), *const others = corners_at<size_b>(t.b, other);
+      if constexpr (size_a == 1 && size_b == 3) write_face_corners(own, others, lanes, slots, count + lane);
+      if constexpr (size_a == 2 && size_b == 2)
+        write_edge_corners(own, others, lanes, hn::Lt(first, second), slots, count + lane);
     }
     count += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(hits.lanes[hit])));
   }
@@ -291,7 +332,7 @@ void meet_grown_blocks(const Traversal& t, Index block, Index other, const Bvh::
     const int k = std::countr_zero(left);
     hits.add(block * Bvh::width + k, other, met_lanes<size_a, size_b>(t, a, block, static_cast<std::size_t>(k), other));
   }
-  pass_on(t, hits);
+  pass_on<size_a, size_b>(t, hits);
 }
 
 /// Compares listed blocks, of which the second ones are those of the first tree, and empties the lists. False if the
@@ -313,7 +354,7 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
                met_lanes<size_a, size_b>(t, t.a.nodes[0][block], block, static_cast<std::size_t>(place % Bvh::width),
                                          rows.second[row]));
     }
-    pass_on(t, hits);
+    pass_on<size_a, size_b>(t, hits);
     if (!t.wants_more()) return false;
   }
   blocks.count = 0;
@@ -414,6 +455,7 @@ namespace stiv {
 void Traversal::grow(PairBuffer& buffer, std::size_t most) {
   buffer.first.resize(2 * most);
   buffer.second.resize(buffer.first.size());
+  for (std::vector<Index>& corners : buffer.corners) corners.resize(buffer.first.size());
 }
 
 void Bvh::overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const {

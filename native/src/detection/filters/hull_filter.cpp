@@ -16,14 +16,14 @@ struct PairHulls {
   Point start[4], end[4];
 };
 
-HWY_INLINE PairHulls load_hulls(const PairBlock& pairs, std::size_t first, const VertexStep* vertices, Point motion) {
-  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0].data() + first);
+HWY_INLINE PairHulls load_hulls(const PairView& pairs, std::size_t first, const VertexStep* vertices, Point motion) {
+  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0] + first);
   const Point far_origin = origin.first + motion;
   PairHulls hulls;
   hulls.start[0] = {all(0), all(0), all(0)};
   hulls.end[0] = origin.second - far_origin;
   for (std::size_t k = 1; k < 4; ++k) {
-    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k].data() + first);
+    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k] + first);
     hulls.start[k] = vertex.first - origin.first;
     hulls.end[k] = vertex.second - far_origin;
   }
@@ -82,7 +82,7 @@ HWY_INLINE Mask are_hulls_apart(const PairHulls& hulls, const NearbySteps& steps
 }
 
 template <EventKind kind>
-void find_apart_by_hulls_of_kind(const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+void find_apart_by_hulls_of_kind(const PairView& pairs, const VertexStep* vertices, const NearbySteps& steps,
                                  unsigned char* result) {
   const Doubles d;
   const double* const m = steps.motion.data();
@@ -95,7 +95,7 @@ void find_apart_by_hulls_of_kind(const PairBlock& pairs, const VertexStep* verti
   }
 }
 
-void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+void find_apart_by_hulls(EventKind kind, const PairView& pairs, const VertexStep* vertices, const NearbySteps& steps,
                          unsigned char* result) {
   if (kind == EventKind::vertex_face)
     find_apart_by_hulls_of_kind<EventKind::vertex_face>(pairs, vertices, steps, result);
@@ -109,7 +109,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
+void find_apart_by_hulls(EventKind kind, const PairView& pairs, const VertexSteps& vertices, const NearbySteps& steps,
                          PairFlags& apart) {
   STIV_FOR_VECTOR_TARGET(find_apart_by_hulls)(kind, pairs, vertices.data(), steps, apart.data());
 }
