@@ -7,6 +7,7 @@
 
 #include "detection/filters/pair_directions-inl.hpp"
 #include "detection/filters/pair_step-inl.hpp"
+#include "hwy/cache_control.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
@@ -81,6 +82,14 @@ HWY_INLINE Mask are_hulls_apart(const PairHulls& hulls, const NearbySteps& steps
   return hn::Or(apart, separates<kind>(across(x[0], middles), hulls, clearance));
 }
 
+/// Fetches what load_hulls will load. Too few loads are under way while the hulls of other pairs are compared.
+HWY_INLINE void prefetch_hulls(const PairView& pairs, std::size_t first, const VertexStep* vertices) {
+  if (first >= pairs.count) return;
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane)
+      hwy::Prefetch(vertices + pairs.vertices[k][first + lane]);
+}
+
 template <EventKind kind>
 void find_apart_by_hulls_of_kind(const PairView& pairs, const VertexStep* vertices, const NearbySteps& steps,
                                  unsigned char* result) {
@@ -89,6 +98,7 @@ void find_apart_by_hulls_of_kind(const PairView& pairs, const VertexStep* vertic
   const Point motion{all(m[0]), all(m[1]), all(m[2])};
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < pairs.count; first += hn::Lanes(d)) {
+    prefetch_hulls(pairs, first + 2 * hn::Lanes(d), vertices);
     const Mask mask = are_hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps);
     hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) result[first + lane] = flags[lane] != 0;
