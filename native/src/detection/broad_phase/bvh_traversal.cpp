@@ -87,6 +87,7 @@ struct Traversal {
 #define HWY_TARGET_INCLUDE "detection/broad_phase/bvh_traversal.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
+#include "hwy/cache_control.h"
 #include "vector/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -335,6 +336,12 @@ void meet_grown_blocks(const Traversal& t, Index block, Index other, const Bvh::
   pass_on<size_a, size_b>(t, hits);
 }
 
+/// Fetches the boxes of a block.
+HWY_INLINE void prefetch(const Bvh::Node& block) {
+  constexpr std::size_t planes_of_line = 64 / sizeof(block.planes[0]);
+  for (std::size_t plane = 0; plane < 8; plane += planes_of_line) hwy::Prefetch(block.planes[plane]);
+}
+
 /// Compares listed blocks, of which the second ones are those of the first tree, and empties the lists. False if the
 /// traversal ends.
 template <Index size_a, Index size_b>
@@ -344,6 +351,7 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
     PairList<some_blocks * width> rows;
     for (std::size_t k = begin; k < std::min(begin + some_blocks, blocks.count); ++k) {
       const Index block = blocks.second[k], other = blocks.first[k];
+      prefetch(t.b.nodes[0][other]);  // for the rows, once all of them are listed
       const unsigned partners = t.same_tree && block == other ? all_but_last : all_children;
       rows.add_children(block, partners & meeting_children(t.a.nodes[0][block], t.b.boxes[0][other]), other);
     }
