@@ -68,12 +68,13 @@ struct Traversal {
   /// Of boxes of the first node, in the frame of the second.
   BoxGrowth growth(const Bvh::Task& pair) const { return frames->growth(group(pair), other_group(pair)); }
 
-  /// Makes room for the pairs of some primitives with a block each.
-  void reserve(std::size_t primitives) const {
+  /// Makes room for the pairs of some primitives with a block each, and for their corners if these are passed on.
+  void reserve(std::size_t primitives, bool with_corners) const {
     const std::size_t most = found->count + (primitives + 1) * Bvh::width;
-    if (most > found->first.size()) grow(*found, most);
+    const std::vector<Index>& last = with_corners ? found->corners.back() : found->second;
+    if (most > last.size()) grow(*found, 2 * most, with_corners);
   }
-  static void grow(PairBuffer& buffer, std::size_t most);
+  static void grow(PairBuffer& buffer, std::size_t size, bool with_corners);
 
   /// Passes on the pairs if they are many. False if no more are wanted.
   bool wants_more() const { return found->count < found->limit || found->full(*found); }
@@ -305,7 +306,8 @@ template <Index size_a, Index size_b, std::size_t most>
 HWY_INLINE void pass_on(const Traversal& t, const HitList<most>& hits) {
   const Ints i;
   const hn::Rebind<std::uint8_t, Ints> bytes;
-  t.reserve(hits.count);
+  constexpr bool with_corners = size_a + size_b == 4;
+  t.reserve(hits.count, with_corners);
   const PairSlots slots(*t.found);
   std::size_t count = t.found->count;
   for (std::size_t hit = 0; hit < hits.count; ++hit) {
@@ -316,10 +318,14 @@ HWY_INLINE void pass_on(const Traversal& t, const HitList<most>& hits) {
       const auto second = chosen(t.b.order + other, lanes);
       hn::StoreU(first, i, slots.first + count + lane);
       hn::StoreU(second, i, slots.second + count + lane);
-      const Index *const own = corners_at<size_a>(t.a, hits.place[hit]), *const others = corners_at<size_b>(t.b, other);
-      if constexpr (size_a == 1 && size_b == 3) write_face_corners(own, others, lanes, slots, count + lane);
-      if constexpr (size_a == 2 && size_b == 2)
-        write_edge_corners(own, others, lanes, hn::Lt(first, second), slots, count + lane);
+      if constexpr (with_corners) {
+        const Index* const own = corners_at<size_a>(t.a, hits.place[hit]);
+        const Index* const others = corners_at<size_b>(t.b, other);
+        if constexpr (size_a == 1)
+          write_face_corners(own, others, lanes, slots, count + lane);
+        else
+          write_edge_corners(own, others, lanes, hn::Lt(first, second), slots, count + lane);
+      }
     }
     count += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(hits.lanes[hit])));
   }
@@ -460,10 +466,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void Traversal::grow(PairBuffer& buffer, std::size_t most) {
-  buffer.first.resize(2 * most);
-  buffer.second.resize(buffer.first.size());
-  for (std::vector<Index>& corners : buffer.corners) corners.resize(buffer.first.size());
+void Traversal::grow(PairBuffer& buffer, std::size_t size, bool with_corners) {
+  buffer.first.resize(size);
+  buffer.second.resize(size);
+  if (!with_corners) return;
+  for (std::vector<Index>& corners : buffer.corners) corners.resize(size);
 }
 
 void Bvh::overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const {
