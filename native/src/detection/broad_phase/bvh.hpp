@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -42,6 +43,9 @@ struct GroupRelations {
 /// Pairs that a traversal found, one array for each side. Its memory is reused.
 struct PairBuffer {
   std::vector<Index> first, second;
+  /// Of each pair, the four corners of a vertex and a face, or of two edges (the lower one first): traversals have them
+  /// at hand. Not filled by other traversals. Entries behind the last pair are corners too.
+  std::array<std::vector<Index>, 4> corners;
   std::size_t count = 0;
 
   /// Above this number of pairs, `full(*this)` is called from time to time. It may remove pairs or raise the limit, and

@@ -187,39 +187,37 @@ class BvhSource final : public CandidateSource {
     found.full = nullptr;
   }
 
-  /// Fills a block with pairs from `begin` on that share a frame. Returns where they end.
-  std::size_t fill_block(EventKind kind, const PairBuffer& found, std::size_t begin, PairBlock& block,
-                         Vector3& motion) const {
+  /// Pairs from `begin` on, few enough for a filter, that share a frame; and its motion.
+  PairView view_of_frame(const PairBuffer& found, std::size_t begin, Vector3& motion) const {
+    const auto& corners = found.corners;
     const FrameMotions& motions = swept_.motions();
-    const std::size_t most = std::min(found.count, begin + PairBlock::capacity);
-    std::size_t end = begin;
-    block.count = 0;
+    std::size_t count = std::min(found.count - begin, PairBlock::capacity);
     motion = motions.common;
-    for (; end < most; ++end) {
-      const std::array<Index, 4> vertices = vertices_of(surface_, kind, found[end]);
-      if (motions.has_own_frames()) {
-        const Vector3& of_pair = motions.of_pair(surface_.body_of(vertices[0]), surface_.body_of(vertices[3]));
-        if (end > begin && of_pair != motion) break;
-        motion = of_pair;
-      }
-      block.add(vertices);
+    if (motions.has_own_frames()) {
+      const auto motion_of = [&](std::size_t pair) -> const Vector3& {
+        return motions.of_pair(surface_.body_of(corners[0][pair]), surface_.body_of(corners[3][pair]));
+      };
+      motion = motion_of(begin);
+      std::size_t same = 1;
+      while (same < count && motion_of(begin + same) == motion) ++same;
+      count = same;
     }
-    return end;
+    return {{&corners[0][begin], &corners[1][begin], &corners[2][begin], &corners[3][begin]}, count};
   }
 
   /// Appends the pairs that may interfere in this step or in a nearby one.
   void append_near(EventKind kind, const PairBuffer& found, std::vector<Candidate>& near) const {
     NearbySteps steps{Vector3::Zero(), separation_, SweptVertices::slack};
-    PairBlock block;
     PairFlags apart;
     std::array<Candidate, PairBlock::capacity> some;
-    for (std::size_t begin = 0, end; begin < found.count; begin = end) {
-      end = fill_block(kind, found, begin, block, steps.motion);
-      find_apart_by_hulls(kind, block, swept_.steps(), steps, apart);
+    for (std::size_t begin = 0, size; begin < found.count; begin += size) {
+      const PairView pairs = view_of_frame(found, begin, steps.motion);
+      size = pairs.count;
+      find_apart_by_hulls(kind, pairs, swept_.steps(), steps, apart);
       std::size_t count = 0;
-      for (std::size_t k = begin; k < end; ++k) {
-        some[count] = found[k];
-        count += apart[k - begin] == 0;
+      for (std::size_t k = 0; k < size; ++k) {
+        some[count] = found[begin + k];
+        count += apart[k] == 0;
       }
       near.insert(near.end(), some.begin(), some.begin() + static_cast<std::ptrdiff_t>(count));
     }

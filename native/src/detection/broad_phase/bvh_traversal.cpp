@@ -68,12 +68,13 @@ struct Traversal {
   /// Of boxes of the first node, in the frame of the second.
   BoxGrowth growth(const Bvh::Task& pair) const { return frames->growth(group(pair), other_group(pair)); }
 
-  /// Makes room for the pairs of some primitives with a block each.
-  void reserve(std::size_t primitives) const {
+  /// Makes room for the pairs of some primitives with a block each, and for their corners if these are passed on.
+  void reserve(std::size_t primitives, bool with_corners) const {
     const std::size_t most = found->count + (primitives + 1) * Bvh::width;
-    if (most > found->first.size()) grow(*found, most);
+    const std::vector<Index>& last = with_corners ? found->corners.back() : found->second;
+    if (most > last.size()) grow(*found, 2 * most, with_corners);
   }
-  static void grow(PairBuffer& buffer, std::size_t most);
+  static void grow(PairBuffer& buffer, std::size_t size, bool with_corners);
 
   /// Passes on the pairs if they are many. False if no more are wanted.
   bool wants_more() const { return found->count < found->limit || found->full(*found); }
@@ -87,6 +88,7 @@ struct Traversal {
 #define HWY_TARGET_INCLUDE "detection/broad_phase/bvh_traversal.cpp"
 #include "vector/foreach_target.hpp"  // first: it includes this file again
 
+#include "hwy/cache_control.h"
 #include "vector/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -253,21 +255,77 @@ HWY_INLINE unsigned met_lanes(const Traversal& t, const Bvh::Node& a, Index bloc
   return t.same_tree && block == other ? bits & (~1U << k) : bits;
 }
 
+/// Some of eight numbers.
+HWY_INLINE hn::Vec<Ints> chosen(const Index* numbers, hn::Vec<Ints> places) {
+  const Ints i;
+#if HWY_MAX_BYTES >= 32
+  return hn::TableLookupLanes(hn::LoadU(i, numbers), hn::IndicesFromVec(i, places));  // gathers take four times as long
+#else
+  return hn::GatherIndex(i, numbers, places);
+#endif
+}
+
+/// Where the numbers of pairs go: each array gets a whole vector.
+struct PairSlots {
+  Index *first, *second;
+  Index* corners[4];
+
+  HWY_INLINE explicit PairSlots(PairBuffer& found) : first(found.first.data()), second(found.second.data()) {
+    for (std::size_t k = 0; k < 4; ++k) corners[k] = found.corners[k].data();
+  }
+};
+
+/// Writes the corners of a vertex and some faces.
+HWY_INLINE void write_face_corners(const Index* vertex, const Index* faces, hn::Vec<Ints> lanes, const PairSlots& slots,
+                                   std::size_t at) {
+  const Ints i;
+  hn::StoreU(hn::Set(i, *vertex), i, slots.corners[0] + at);
+  for (std::size_t k = 0; k < 3; ++k) hn::StoreU(chosen(faces + k * width, lanes), i, slots.corners[k + 1] + at);
+}
+
+/// Writes the corners of an edge and some others, those of the lower one first.
+HWY_INLINE void write_edge_corners(const Index* edge, const Index* others, hn::Vec<Ints> lanes,
+                                   hn::Mask<Ints> edge_is_lower, const PairSlots& slots, std::size_t at) {
+  const Ints i;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto own = hn::Set(i, edge[k * width]), other = chosen(others + k * width, lanes);
+    hn::StoreU(hn::IfThenElse(edge_is_lower, own, other), i, slots.corners[k] + at);
+    hn::StoreU(hn::IfThenElse(edge_is_lower, other, own), i, slots.corners[k + 2] + at);
+  }
+}
+
+/// The corners of the primitive at a place of the blocks: one in each array of a block.
+template <Index size>
+HWY_INLINE const Index* corners_at(const TreeView& tree, Index place) {
+  const auto block = static_cast<std::size_t>(place) / width;
+  return tree.corners + block * width * static_cast<std::size_t>(size) + static_cast<std::size_t>(place) % width;
+}
+
 /// Passes on the pairs of a list.
-template <std::size_t most>
+template <Index size_a, Index size_b, std::size_t most>
 HWY_INLINE void pass_on(const Traversal& t, const HitList<most>& hits) {
   const Ints i;
   const hn::Rebind<std::uint8_t, Ints> bytes;
-  t.reserve(hits.count);
+  constexpr bool with_corners = size_a + size_b == 4;
+  t.reserve(hits.count, with_corners);
+  const PairSlots slots(*t.found);
   std::size_t count = t.found->count;
   for (std::size_t hit = 0; hit < hits.count; ++hit) {
     const auto first = hn::Set(i, t.a.order[hits.place[hit]]);
-    const Index* const order = t.b.order + static_cast<std::ptrdiff_t>(hits.other[hit]) * Bvh::width;
-    const std::uint8_t* const lanes = lanes_of_bits[hits.lanes[hit]].data();
+    const Index other = hits.other[hit] * Bvh::width;
     for (std::size_t lane = 0; lane < width; lane += hn::Lanes(i)) {
-      hn::StoreU(first, i, t.found->first.data() + count + lane);
-      hn::StoreU(hn::GatherIndex(i, order, hn::PromoteTo(i, hn::LoadU(bytes, lanes + lane))), i,
-                 t.found->second.data() + count + lane);
+      const auto lanes = hn::PromoteTo(i, hn::LoadU(bytes, lanes_of_bits[hits.lanes[hit]].data() + lane));
+      const auto second = chosen(t.b.order + other, lanes);
+      hn::StoreU(first, i, slots.first + count + lane);
+      hn::StoreU(second, i, slots.second + count + lane);
+      if constexpr (with_corners) {
+        const Index* const own = corners_at<size_a>(t.a, hits.place[hit]);
+        const Index* const others = corners_at<size_b>(t.b, other);
+        if constexpr (size_a == 1)
+          write_face_corners(own, others, lanes, slots, count + lane);
+        else
+          write_edge_corners(own, others, lanes, hn::Lt(first, second), slots, count + lane);
+      }
     }
     count += static_cast<std::size_t>(std::popcount(static_cast<unsigned>(hits.lanes[hit])));
   }
@@ -281,7 +339,13 @@ void meet_grown_blocks(const Traversal& t, Index block, Index other, const Bvh::
     const int k = std::countr_zero(left);
     hits.add(block * Bvh::width + k, other, met_lanes<size_a, size_b>(t, a, block, static_cast<std::size_t>(k), other));
   }
-  pass_on(t, hits);
+  pass_on<size_a, size_b>(t, hits);
+}
+
+/// Fetches the boxes of a block.
+HWY_INLINE void prefetch(const Bvh::Node& block) {
+  constexpr std::size_t planes_of_line = 64 / sizeof(block.planes[0]);
+  for (std::size_t plane = 0; plane < 8; plane += planes_of_line) hwy::Prefetch(block.planes[plane]);
 }
 
 /// Compares listed blocks, of which the second ones are those of the first tree, and empties the lists. False if the
@@ -293,6 +357,7 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
     PairList<some_blocks * width> rows;
     for (std::size_t k = begin; k < std::min(begin + some_blocks, blocks.count); ++k) {
       const Index block = blocks.second[k], other = blocks.first[k];
+      prefetch(t.b.nodes[0][other]);  // for the rows, once all of them are listed
       const unsigned partners = t.same_tree && block == other ? all_but_last : all_children;
       rows.add_children(block, partners & meeting_children(t.a.nodes[0][block], t.b.boxes[0][other]), other);
     }
@@ -303,7 +368,7 @@ bool meet_listed(const Traversal& t, ParentPairs& parents, BlockPairs& blocks) {
                met_lanes<size_a, size_b>(t, t.a.nodes[0][block], block, static_cast<std::size_t>(place % Bvh::width),
                                          rows.second[row]));
     }
-    pass_on(t, hits);
+    pass_on<size_a, size_b>(t, hits);
     if (!t.wants_more()) return false;
   }
   blocks.count = 0;
@@ -401,9 +466,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void Traversal::grow(PairBuffer& buffer, std::size_t most) {
-  buffer.first.resize(2 * most);
-  buffer.second.resize(buffer.first.size());
+void Traversal::grow(PairBuffer& buffer, std::size_t size, bool with_corners) {
+  buffer.first.resize(size);
+  buffer.second.resize(size);
+  if (!with_corners) return;
+  for (std::vector<Index>& corners : buffer.corners) corners.resize(size);
 }
 
 void Bvh::overlaps(const Task& task, const Bvh& other, const GroupRelations& groups, PairBuffer& found) const {

@@ -7,6 +7,7 @@
 
 #include "detection/filters/pair_directions-inl.hpp"
 #include "detection/filters/pair_step-inl.hpp"
+#include "hwy/cache_control.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
@@ -16,14 +17,14 @@ struct PairHulls {
   Point start[4], end[4];
 };
 
-HWY_INLINE PairHulls load_hulls(const PairBlock& pairs, std::size_t first, const VertexStep* vertices, Point motion) {
-  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0].data() + first);
+HWY_INLINE PairHulls load_hulls(const PairView& pairs, std::size_t first, const VertexStep* vertices, Point motion) {
+  const TwoPoints origin = load_vertices(vertices, pairs.vertices[0] + first);
   const Point far_origin = origin.first + motion;
   PairHulls hulls;
   hulls.start[0] = {all(0), all(0), all(0)};
   hulls.end[0] = origin.second - far_origin;
   for (std::size_t k = 1; k < 4; ++k) {
-    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k].data() + first);
+    const TwoPoints vertex = load_vertices(vertices, pairs.vertices[k] + first);
     hulls.start[k] = vertex.first - origin.first;
     hulls.end[k] = vertex.second - far_origin;
   }
@@ -81,21 +82,30 @@ HWY_INLINE Mask are_hulls_apart(const PairHulls& hulls, const NearbySteps& steps
   return hn::Or(apart, separates<kind>(across(x[0], middles), hulls, clearance));
 }
 
+/// Fetches what load_hulls will load. Too few loads are under way while the hulls of other pairs are compared.
+HWY_INLINE void prefetch_hulls(const PairView& pairs, std::size_t first, const VertexStep* vertices) {
+  if (first >= pairs.count) return;
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t lane = 0; lane < hn::Lanes(Doubles()); ++lane)
+      hwy::Prefetch(vertices + pairs.vertices[k][first + lane]);
+}
+
 template <EventKind kind>
-void find_apart_by_hulls_of_kind(const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+void find_apart_by_hulls_of_kind(const PairView& pairs, const VertexStep* vertices, const NearbySteps& steps,
                                  unsigned char* result) {
   const Doubles d;
   const double* const m = steps.motion.data();
   const Point motion{all(m[0]), all(m[1]), all(m[2])};
   HWY_ALIGN double flags[HWY_MAX_BYTES / sizeof(double)];
   for (std::size_t first = 0; first < pairs.count; first += hn::Lanes(d)) {
+    prefetch_hulls(pairs, first + 2 * hn::Lanes(d), vertices);
     const Mask mask = are_hulls_apart<kind>(load_hulls(pairs, first, vertices, motion), steps);
     hn::Store(hn::IfThenElseZero(mask, all(1)), d, flags);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) result[first + lane] = flags[lane] != 0;
   }
 }
 
-void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexStep* vertices, const NearbySteps& steps,
+void find_apart_by_hulls(EventKind kind, const PairView& pairs, const VertexStep* vertices, const NearbySteps& steps,
                          unsigned char* result) {
   if (kind == EventKind::vertex_face)
     find_apart_by_hulls_of_kind<EventKind::vertex_face>(pairs, vertices, steps, result);
@@ -109,7 +119,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
+void find_apart_by_hulls(EventKind kind, const PairView& pairs, const VertexSteps& vertices, const NearbySteps& steps,
                          PairFlags& apart) {
   STIV_FOR_VECTOR_TARGET(find_apart_by_hulls)(kind, pairs, vertices.data(), steps, apart.data());
 }

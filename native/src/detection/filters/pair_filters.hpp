@@ -26,6 +26,19 @@ struct PairBlock {
   }
 };
 
+/// The vertices of up to PairBlock::capacity pairs, wherever they are. Vector code reads a vector's width from the last
+/// pair on: there must be numbers of vertices.
+struct PairView {
+  PairView(const PairBlock& block) : count(block.count) {
+    for (std::size_t k = 0; k < 4; ++k) vertices[k] = block.vertices[k].data();
+  }
+  PairView(const std::array<const Index*, 4>& of_pairs, std::size_t pair_count)
+      : vertices(of_pairs), count(pair_count) {}
+
+  std::array<const Index*, 4> vertices;
+  std::size_t count;
+};
+
 /// 1 or 0 for each pair of a block.
 using PairFlags = std::array<unsigned char, PairBlock::capacity>;
 
@@ -55,7 +68,7 @@ struct NearbySteps {
 
 /// By directions of the start (the normal, between the centers, across an edge) in which the hulls of both sides stay
 /// apart in all nearby steps, beyond all rounding. [mathematics.md, "Rounds of one edit"]
-void find_apart_by_hulls(EventKind kind, const PairBlock& pairs, const VertexSteps& vertices, const NearbySteps& steps,
+void find_apart_by_hulls(EventKind kind, const PairView& pairs, const VertexSteps& vertices, const NearbySteps& steps,
                          PairFlags& apart);
 
 }  // namespace stiv

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "detection/narrow_phase/contact.hpp"
+#include "detection/narrow_phase/near_miss.hpp"
 
 namespace stiv {
 
@@ -38,6 +39,7 @@ std::optional<Approach<double>> refined(const RelativeMotion<double>& motion, co
   constexpr double noticeable = 1024;
   if (threshold > noticeable * motion.rounding || crosses(motion, approach)) return approach;
   const RelativeMotion<DoubleDouble> finer(motion.kind, pair);
+  if (slips_past(finer, threshold, approach)) return std::nullopt;
   const auto found = advance<DoubleDouble>(finer, threshold, approach.time, 1);
   if (!found) return std::nullopt;
   const double time = rounded_down(found->time);

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "detection/broad_phase/primitive_tree.hpp"
+#include "detection/broad_phase/relevance.hpp"
 #include "detection/scenes.hpp"
 
 using namespace stiv;
@@ -149,4 +150,37 @@ TEST_CASE(
   CHECK(pairs_of_edges(hardly, true) > 1000);
   CHECK(pairs_of_edges(away, true) < 1.1 * pairs_of_edges(hardly, true));  // of the slack
   CHECK(pairs_of_edges(away, false) > 10 * pairs_of_edges(away, true));
+}
+
+TEST_CASE("primitive tree: pairs of a traversal come with their corners, and so do places behind the last one") {
+  const MovingScene scene = stirred_sheets(20, 2, 0.1, 3);
+  const Surface& surface = *scene.surface;
+  const Step step{scene.start, scene.end, {1e-4}};
+  SweptVertices swept(surface);
+  const Execution execution(1);
+  const SweptVertices::Change change = swept.update(step, execution);
+  std::vector<Index> numbers(static_cast<std::size_t>(surface.vertex_count()));
+  std::iota(numbers.begin(), numbers.end(), 0);
+  PrimitiveTree<1> vertices(surface, numbers.data(), surface.vertex_count());
+  PrimitiveTree<2> edges(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()));
+  PrimitiveTree<3> faces(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows()));
+  vertices.update(step, swept, change, execution);
+  edges.update(step, swept, change, execution);
+  faces.update(step, swept, change, execution);
+  const auto check = [&](EventKind kind, const Bvh& a, const Bvh& b) {
+    PairBuffer found;
+    for (const Bvh::Task& task : a.tasks(b, {})) a.overlaps(task, b, {}, found);
+    CHECK(found.count > 1000);
+    for (std::size_t pair = 0; pair < found.count; ++pair) {
+      const std::array<Index, 4> expected = vertices_of(surface, kind, found[pair]);
+      for (std::size_t k = 0; k < 4; ++k) CHECK(found.corners[k][pair] == expected[k]);
+    }
+    for (const std::vector<Index>& corners : found.corners) {
+      REQUIRE(corners.size() >= found.count + Bvh::width);
+      CHECK(*std::min_element(corners.begin(), corners.end()) >= 0);
+      CHECK(*std::max_element(corners.begin(), corners.end()) < surface.vertex_count());
+    }
+  };
+  check(EventKind::vertex_face, vertices.tree(), faces.tree());
+  check(EventKind::edge_edge, edges.tree(), edges.tree());
 }
