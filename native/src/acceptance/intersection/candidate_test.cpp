@@ -7,6 +7,15 @@
 
 namespace stiv {
 
+namespace {
+
+CornerPair corners_of(const TrianglePairs& block, std::size_t k) {
+  const auto& corners = block.corners;
+  return {{corners[0][k], corners[1][k], corners[2][k]}, {corners[3][k], corners[4][k], corners[5][k]}};
+}
+
+}  // namespace
+
 bool intersect(const Surface& surface, const CornerPair& corners, const PositionsView& q) {
   const auto& [a, b] = corners;
   return !surface.in_one_flip_face(std::array{a[0], a[1], a[2], b[0], b[1], b[2]}) && triangles_intersect(a, b, q);
@@ -16,15 +25,9 @@ CandidateTest::CandidateTest(const Surface& surface, const PositionsView& q, con
                              NearPairs* near, Report report)
     : surface_(surface), q_(q), points_(points), near_(near), report_(std::move(report)) {}
 
-bool CandidateTest::add(const PrimitivePair& pair, const CornerPair& corners) {
-  if (share_corner(corners.first, corners.second)) {
-    list(corners);
-    return !intersect(surface_, corners, q_) || report_(pair);
-  }
-  pairs_[block_.count] = pair;
-  corners_[block_.count] = corners;
-  block_.add(corners.first, corners.second);
-  return block_.count < TrianglePairs::capacity || finish();
+bool CandidateTest::test_neighbours(const PrimitivePair& pair, const CornerPair& corners) {
+  list(corners);
+  return !intersect(surface_, corners, q_) || report_(pair);
 }
 
 bool CandidateTest::finish() {
@@ -33,8 +36,9 @@ bool CandidateTest::finish() {
   const std::size_t count = std::exchange(block_.count, 0);
   for (std::size_t k = 0; k < count; ++k) {
     if (separated[k]) continue;
-    list(corners_[k]);
-    if (intersect(surface_, corners_[k], q_) && !report_(pairs_[k])) return false;
+    const CornerPair corners = corners_of(block_, k);
+    list(corners);
+    if (intersect(surface_, corners, q_) && !report_(pairs_[k])) return false;
   }
   return true;
 }

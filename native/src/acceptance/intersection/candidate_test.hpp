@@ -27,12 +27,18 @@ class CandidateTest {
 
   /// Adds a candidate. Returns false if the report stopped.
   /// @param pair its numbers, for the report
-  bool add(const PrimitivePair& pair, const CornerPair& corners);
+  bool add(const PrimitivePair& pair, const std::array<Index, 3>& first, const std::array<Index, 3>& second) {
+    if (share_corner(first, second)) return test_neighbours(pair, {first, second});
+    pairs_[block_.count] = pair;
+    block_.add(first, second);
+    return block_.count < TrianglePairs::capacity || finish();
+  }
 
   /// Tests the pairs of an incomplete block. Returns false if the report stopped.
   bool finish();
 
  private:
+  bool test_neighbours(const PrimitivePair& pair, const CornerPair& corners);
   void list(const CornerPair& corners);
 
   const Surface& surface_;
@@ -42,7 +48,6 @@ class CandidateTest {
   Report report_;
   TrianglePairs block_;
   std::array<PrimitivePair, TrianglePairs::capacity> pairs_;
-  std::array<CornerPair, TrianglePairs::capacity> corners_;
 };
 
 }  // namespace stiv

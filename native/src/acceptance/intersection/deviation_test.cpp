@@ -70,7 +70,7 @@ bool DeviationTest::Implementation::are_pairs_free(const PositionsView& q, const
   return all_chunks(near_.pairs.size(), execution, [&](std::size_t begin, std::size_t end) {
     CandidateTest test(*surface_, q, points, nullptr, [](const PrimitivePair&) { return false; });
     for (std::size_t k = begin; k < end; ++k)
-      if (!test.add({}, near_.pairs[k])) return false;
+      if (!test.add({}, near_.pairs[k].first, near_.pairs[k].second)) return false;
     return test.finish();
   });
 }

@@ -84,7 +84,7 @@ class Search {
     candidates.limit = 4096;
     candidates.full = [&](PairBuffer& found) {
       for (std::size_t k = 0; k < found.count && more; ++k)
-        more = test.add(found[k], {first_.corners(found[k].first), second_.corners(found[k].second)});
+        more = test.add(found[k], first_.corners(found.first[k]), second_.corners(found.second[k]));
       found.count = 0;
       return more;
     };

@@ -194,14 +194,22 @@ bool SweptVertices::near_segment(const Step& step, Index vertex, const Vector3& 
 }
 
 void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
-  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index begin, Index end, Index) {
+  const auto count = static_cast<Index>(vertices.size());
+  std::vector<std::int32_t> reaches(Execution::chunk_count(count, chunk_size));
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    std::int32_t reach = 0;
     for (Index k = begin; k < end; ++k) {
       const Index vertex = vertices[k];
       boxes_[vertex] = box(step, vertex);
+      const CoarseStep coarse = coarse_frame_.step(row(step.start, vertex), row(step.end, vertex));
+      reach = std::max(reach, coarse.reach());
+      coarse_steps_[vertex] = coarse;
       start_.row(vertex) = step.start.row(vertex);
       end_.row(vertex) = step.end.row(vertex);
     }
+    reaches[chunk] = reach;
   });
+  for (const std::int32_t reach : reaches) coarse_reach_ = std::max(coarse_reach_, reach);
 }
 
 /// Do the boxes contain the step in frames with its motions? False for numbers that are not finite.
@@ -275,8 +283,11 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
   complete_ = false;  // until the end: this may be cancelled
   frame_ = frame;
   motions_ = step.motions;
+  coarse_frame_ = CoarseFrame(frame.centre, frame.motion, frame.radius);
   if (all) {
     boxes_.resize(count);
+    coarse_steps_.resize(count);
+    coarse_reach_ = 0;
     start_.resize(count, 3);
     end_.resize(count, 3);
     if (static_cast<Index>(changed_.size()) < count) {
