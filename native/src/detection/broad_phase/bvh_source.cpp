@@ -141,7 +141,7 @@ class BvhSource final : public CandidateSource {
       pairs.tasks = first_tree(kind).tasks(second_tree(kind), bodies_);
       pairs.near.resize(pairs.tasks.size());
     });
-    compared_ = near_ = 0;
+    compared_ = near_ = compared_coarsely_ = left_coarsely_ = 0;
     const auto faces = static_cast<Index>(of(EventKind::vertex_face).tasks.size());
     const auto count = faces + static_cast<Index>(of(EventKind::edge_edge).tasks.size());
     execution.for_chunks(count, 1, [&](Index task, Index, Index) {
@@ -209,7 +209,7 @@ class BvhSource final : public CandidateSource {
 
   /// Removes pairs that the filter of `append_near` would drop too: most of them, in half of its time.
   void drop_coarsely_apart(EventKind kind, PairBuffer& found) const {
-    if (swept_.motions().has_own_frames() || !swept_.coarse_frame().is_valid()) return;
+    if (swept_.motions().has_own_frames() || !swept_.coarse_frame().is_valid() || is_coarse_filter_useless()) return;
     const CoarseBounds bounds = swept_.coarse_bounds();
     auto& corners = found.corners;
     std::size_t left = 0;
@@ -225,7 +225,16 @@ class BvhSource final : public CandidateSource {
         ++left;
       }
     }
+    compared_coarsely_ += static_cast<std::int64_t>(found.count);
+    left_coarsely_ += static_cast<std::int64_t>(left);
     found.count = left;
+  }
+
+  /// Does the coarse filter leave so many pairs of this step that it costs more than it saves? The result of a search
+  /// does not depend on it.
+  bool is_coarse_filter_useless() const {
+    constexpr std::int64_t some = 1024;
+    return left_coarsely_ > some && 3 * left_coarsely_ > compared_coarsely_;
   }
 
   /// Appends the pairs that may interfere in this step or in a nearby one. Removes others from the buffer.
@@ -268,6 +277,7 @@ class BvhSource final : public CandidateSource {
   PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
   std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
+  mutable std::atomic<std::int64_t> compared_coarsely_{0}, left_coarsely_{0};  // by the coarse filter
   bool refitted_ = false;                            // the trees match the boxes
   bool collected_ = false;                           // the cached pairs are complete
 };
