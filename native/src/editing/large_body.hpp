@@ -6,7 +6,7 @@
 namespace stiv {
 
 /// Mean length of the edges of bodies that may move and are so large that they get their own frames in a search; 0 if
-/// there are none. A search of such a body takes long, and finds very many contacts where it moves by many edges into
+/// there are none. Searching one takes long, and finds very many contacts where it moves by many edges into
 /// something.
 /// @param q positions of at least all vertices that may move
 double mean_edge_of_large_bodies(const Surface& surface, const Positions& q);

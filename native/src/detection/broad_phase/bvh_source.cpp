@@ -230,8 +230,8 @@ class BvhSource final : public CandidateSource {
     found.count = left;
   }
 
-  /// Does the coarse filter leave so many pairs of this step that it costs more than it saves? The result of a search
-  /// does not depend on it.
+  /// Does the coarse filter leave more than a third of this step's pairs, and thus cost more than it saves? The result
+  /// of a search does not depend on it.
   bool is_coarse_filter_useless() const {
     constexpr std::int64_t some = 1024;
     return left_coarsely_ > some && 3 * left_coarsely_ > compared_coarsely_;
@@ -276,10 +276,10 @@ class BvhSource final : public CandidateSource {
   PrimitiveTree<2> edges_;
   PrimitiveTree<3> faces_;
   std::array<Pairs, 2> pairs_;
-  std::atomic<std::int64_t> compared_{0}, near_{0};  // pairs so far in this step
+  std::atomic<std::int64_t> compared_{0}, near_{0};                            // pairs so far in this step
   mutable std::atomic<std::int64_t> compared_coarsely_{0}, left_coarsely_{0};  // by the coarse filter
-  bool refitted_ = false;                            // the trees match the boxes
-  bool collected_ = false;                           // the cached pairs are complete
+  bool refitted_ = false;                                                      // the trees match the boxes
+  bool collected_ = false;                                                     // the cached pairs are complete
 };
 
 }  // namespace
