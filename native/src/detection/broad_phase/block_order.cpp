@@ -91,7 +91,7 @@ class BlockList {
   Points centres_;
 };
 
-/// The order of several groups, given one after the other.
+/// The order of several groups, given in sequence.
 std::vector<Index> order_groups(Items points, Given given, const std::vector<Index>& groups, std::size_t block,
                                 const Execution& execution) {
   std::vector<Index> order;
