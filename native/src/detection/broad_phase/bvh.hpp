@@ -44,7 +44,7 @@ struct GroupRelations {
 struct PairBuffer {
   std::vector<Index> first, second;
   /// Of each pair, the four corners of a vertex and a face, or of two edges (the lower one first): traversals have them
-  /// at hand. Not filled by other traversals. Entries behind the last pair are corners too.
+  /// at hand. Not filled by other traversals. There is room for a node's width of pairs behind the last one.
   std::array<std::vector<Index>, 4> corners;
   std::size_t count = 0;
 

@@ -237,9 +237,18 @@ class BvhSource final : public CandidateSource {
     return left_coarsely_ > some && 3 * left_coarsely_ > compared_coarsely_;
   }
 
+  /// Repeats the last pair's corners where vector code reads beyond it. A search of another surface may have left
+  /// numbers there that this one does not have.
+  static void pad_corners(PairBuffer& found) {
+    if (found.count == 0) return;
+    for (std::vector<Index>& corner : found.corners)
+      std::fill_n(corner.begin() + static_cast<std::ptrdiff_t>(found.count), Bvh::width, corner[found.count - 1]);
+  }
+
   /// Appends the pairs that may interfere in this step or in a nearby one. Removes others from the buffer.
   void append_near(EventKind kind, PairBuffer& found, std::vector<Candidate>& near) const {
     drop_coarsely_apart(kind, found);
+    pad_corners(found);
     NearbySteps steps{Vector3::Zero(), separation_, SweptVertices::slack};
     PairFlags apart;
     std::array<Candidate, PairBlock::capacity> some;
