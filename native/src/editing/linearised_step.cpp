@@ -59,7 +59,7 @@ Controls linearised_step(EditCall& call, const Controls& ahead) {
     call.execution.check();
     std::vector<ControlConstraint> contacts = contacts_toward(call, p);
     if (contacts.empty() || constraints.size() + contacts.size() > max_constraints(call.context)) break;
-    constraints.add(std::move(contacts), call.execution);
+    constraints.add(std::move(contacts));
     p = project_within_limits(call, constraints, ahead);
   }
   return p;

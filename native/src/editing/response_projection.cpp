@@ -36,13 +36,12 @@ const Metric& ready_metric(const EditCall& call) {
 
 Controls project_within_limits(const EditCall& call, ConstraintSet& constraints, const Controls& from) {
   const bool solves_lcp = call.context.options().solver == ConstraintSolver::lcp;
-  const auto solve = solves_lcp ? &ConstraintSet::project : &ConstraintSet::project_as_equations;
-  const Metric& metric = ready_metric(call);
   for (;;) {
-    Controls p = (constraints.*solve)(from, metric, call.accepted.controls, call.execution);
+    Controls p =
+        solves_lcp ? constraints.project(from, call.execution) : constraints.project_as_equations(from, call.execution);
     std::vector<ControlConstraint> limits = exceeded_limits(call, constraints, p);
     if (limits.empty()) return p;
-    constraints.add(std::move(limits), call.execution);
+    constraints.add(std::move(limits));
   }
 }
 

@@ -110,24 +110,25 @@ bool RoundLoop::constrain() {
   RoundVolumes volumes = volumes_of_round(call_.context, {*progress_.events, start, end, *areas_}, progress_.round,
                                           constraints.size(), call_.execution);
   outcome_.patches = volumes.patches;
-  progress_.accumulates = progress_.accumulates && options_.solver == ConstraintSolver::lcp &&
-                          (progress_.round < options_.accumulated_rounds || volumes.each_contact);
-  if (!progress_.accumulates) constraints = ConstraintSet();
-  if (!linearise(std::move(volumes.stivs))) {
+  std::vector<ControlConstraint> rows = linearised(std::move(volumes.stivs));
+  if (rows.empty()) {
     outcome_.events = *progress_.events;  // a call that resumes these rounds needs them again
     place_surface();
     return false;
   }
+  progress_.accumulates = progress_.accumulates && options_.solver == ConstraintSolver::lcp &&
+                          (progress_.round < options_.accumulated_rounds || volumes.each_contact);
+  if (!progress_.accumulates) constraints = ConstraintSet();
+  constraints.add(std::move(rows));
   progress_.events_are_constrained = true;  // a projection that is interrupted must not add them twice
   return true;
 }
 
-/// False if there are no constraints to add.
-bool RoundLoop::linearise(std::vector<Stiv> stivs) {
+std::vector<ControlConstraint> RoundLoop::linearised(std::vector<Stiv> stivs) const {
   const ScopedTimer timer(call_.execution.timings.response);
   for (Stiv& stiv : stivs) leave_out_obstacles(stiv.gradient, call_.context.deformation().vertex_count());
-  return add_constraints(progress_.constraints, stivs, call_.context.deformation(), outcome_.candidate.controls,
-                         ready_metric(call_), call_.accepted.controls, call_.execution) > 0;
+  return control_constraints(stivs, call_.context.deformation(), outcome_.candidate.controls, ready_metric(call_),
+                             call_.accepted.controls, &call_.execution);
 }
 
 /// Projects to the next candidate.

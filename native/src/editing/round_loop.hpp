@@ -48,7 +48,7 @@ class RoundLoop {
 
   std::optional<Events> find_events();
   std::optional<Events> find_near_events();
-  bool linearise(std::vector<Stiv> stivs);
+  std::vector<ControlConstraint> linearised(std::vector<Stiv> stivs) const;
   void place_surface();
 
   EditCall& call_;

@@ -76,16 +76,15 @@ TEST_CASE("row projection: sets that switch between matrix and rows, and drop so
   std::mt19937 random(7);
   const Index count = 200;
   const Eigen::VectorXd weights = Eigen::VectorXd::Ones(count);
-  const auto metric = make_control_metric({}, count);
   ConstraintSet set;
   const Controls from = Controls::Random(count, 3);
   for (const int more : {5, 95, 3}) {  // 3 * 8 multiplications per row: by rows if there are at least 25
     std::vector<ControlConstraint> added;
     for (int r = 0; r < more; ++r) added.push_back(random_constraint(random, count, 4, weights));
-    set.add(added, Execution(1));
-    const Controls p = set.project(from, *metric, from, Execution(1));
+    set.add(added);
+    const Controls p = set.project(from, Execution(1));
     for (const ControlConstraint& constraint : added) CHECK(product(constraint.row, p) >= constraint.bound - 1e-7);
     set.drop_inactive();
-    CHECK((set.project(from, *metric, from, Execution(1)) - p).norm() < 1e-7);
+    CHECK((set.project(from, Execution(1)) - p).norm() < 1e-7);
   }
 }

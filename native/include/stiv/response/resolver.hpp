@@ -18,7 +18,7 @@ enum class ConstraintSolver {
 /// A linear constraint on the controls, row . p >= bound, with step = M^-1 row, scaled so that row . step = 1.
 struct ControlConstraint {
   SparseField row;
-  SparseField step;  ///< empty in a ConstraintSet that does not keep it
+  SparseField step;
   double bound = 0;
   Index limit = -1;  ///< the limit of a scalar that it keeps (ControlLimits); -1: none
 };
@@ -33,51 +33,32 @@ std::vector<ControlConstraint> control_constraints(const std::vector<Stiv>& stiv
                                                    const Execution* execution = nullptr);
 
 /// Constraints that are solved together. The last multipliers are the next first guess, and the Gram matrix grows with
-/// the constraints, so that adding a few rows and projecting again is cheap. Long steps are only used for the Gram
-/// matrix: those of hundreds of contacts, which move hundreds of coupled controls each, would take megabytes.
+/// the constraints, so that adding a few rows and projecting again is cheap.
 class ConstraintSet {
  public:
-  /// @param expected size after further additions, so that a growing Gram matrix is not copied at each
-  /// @throws Interrupted; the set is then as before
-  void add(std::vector<ControlConstraint> constraints, const Execution& execution, std::size_t expected = 0);
+  void add(std::vector<ControlConstraint> constraints);
   std::size_t size() const { return constraints_.size(); }
   bool has_limit(Index limit) const;
-
-  /// Removes all but the first constraints.
-  void keep_first(std::size_t count);
 
   /// Removes constraints that were inactive in the last projection.
   void drop_inactive();
 
   /// The point closest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
   /// multipliers of the LCP. (mathematics.md, Eq. 6)
-  /// @param metric, metric_at those of the constraints
-  Controls project(const Controls& from, const Metric& metric, const Controls& metric_at, const Execution& execution);
+  Controls project(const Controls& from, const Execution& execution);
 
   /// The same with all constraints as equations, in the least-squares sense with the smallest multipliers.
   /// [P3.3; Harmon et al. 2008]
-  Controls project_as_equations(const Controls& from, const Metric& metric, const Controls& metric_at,
-                                const Execution& execution);
+  Controls project_as_equations(const Controls& from, const Execution& execution);
 
  private:
-  void reserve_gram(std::size_t count);
-  void extend_gram(const Execution& execution);
   void complete_gram(const Execution& execution);
-  bool keeps_all_steps() const;
   Eigen::VectorXd excess_at(const Controls& p) const;
-  Controls moved_by_multipliers(const Controls& from, const Metric& metric, const Controls& metric_at) const;
+  Controls moved_by_multipliers(const Controls& from) const;
 
   std::vector<ControlConstraint> constraints_;
-  Eigen::MatrixXd gram_;      ///< row_r . step_s of the first constraints, with room for more
-  Eigen::Index in_gram_ = 0;  ///< how many these are
+  Eigen::MatrixXd gram_;  ///< row_r . step_s of the first constraints
   Eigen::VectorXd multipliers_;
 };
-
-/// Adds the constraints of STIVs like `control_constraints`, a few at a time, so that few long steps exist at once.
-/// Returns how many it added.
-/// @throws Interrupted; the set is then as before
-std::size_t add_constraints(ConstraintSet& set, const std::vector<Stiv>& stivs, const Deformation& deformation,
-                            const Controls& p, const Metric& metric, const Controls& metric_at,
-                            const Execution& execution);
 
 }  // namespace stiv
