@@ -61,8 +61,8 @@ class EditContext {
   double pull_distance() const { return options_.pull_limit * diagonal_; }
   /// Does a large body move? Calls then take steps that need fewer searches.
   bool has_large_body() const { return large_body_edge_ > 0; }
-  /// With a large body, the longest motion in which a search that begins from nothing looks for contacts.
-  double first_reach() const { return edges_in_first_reach * large_body_edge_; }
+  /// With a large body, the longest motion in which the first search of a pull looks for contacts: an edge.
+  double first_reach() const { return large_body_edge_; }
   /// @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes);
   /// Factors the metric again if the Jacobian was replaced, and returns whether it was.
@@ -95,8 +95,6 @@ class EditContext {
   void check_positions(const PositionsView& q) const;
 
  private:
-  static constexpr double edges_in_first_reach = 1;
-
   void set_proximity(const Positions& start, const Controls& controls);
 
   std::shared_ptr<const Surface> surface_;

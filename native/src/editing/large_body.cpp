@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "editing/large_body.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "stiv/detection/detector.hpp"
@@ -24,6 +25,7 @@ std::vector<unsigned char> large_bodies(const Surface& surface) {
 double mean_edge_of_large_bodies(const Surface& surface, const Positions& q) {
   if (surface.bodies().size() < 2) return 0;
   const std::vector<unsigned char> large = large_bodies(surface);
+  if (std::find(large.begin(), large.end(), 1) == large.end()) return 0;
   double sum = 0;
   Index count = 0;
   for (const auto& edge : surface.edges().rowwise()) {

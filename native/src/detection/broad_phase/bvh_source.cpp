@@ -189,6 +189,11 @@ class BvhSource final : public CandidateSource {
     found.full = nullptr;
   }
 
+  static PairView view(const PairBuffer& found, std::size_t begin, std::size_t count) {
+    const auto& corners = found.corners;
+    return {{&corners[0][begin], &corners[1][begin], &corners[2][begin], &corners[3][begin]}, count};
+  }
+
   /// Pairs from `begin` on, few enough for a filter, that share a frame; and its motion.
   PairView view_of_frame(const PairBuffer& found, std::size_t begin, Vector3& motion) const {
     const auto& corners = found.corners;
@@ -204,24 +209,22 @@ class BvhSource final : public CandidateSource {
       while (same < count && motion_of(begin + same) == motion) ++same;
       count = same;
     }
-    return {{&corners[0][begin], &corners[1][begin], &corners[2][begin], &corners[3][begin]}, count};
+    return view(found, begin, count);
   }
 
   /// Removes pairs that the filter of `append_near` would drop too: most of them, in half of its time.
   void drop_coarsely_apart(EventKind kind, PairBuffer& found) const {
     if (swept_.motions().has_own_frames() || !swept_.coarse_frame().is_valid() || is_coarse_filter_useless()) return;
     const CoarseBounds bounds = swept_.coarse_bounds();
-    auto& corners = found.corners;
     std::size_t left = 0;
-    for (std::size_t begin = 0; begin < found.count; begin += 64) {
-      const std::size_t count = std::min<std::size_t>(found.count - begin, 64);
-      const PairView pairs({&corners[0][begin], &corners[1][begin], &corners[2][begin], &corners[3][begin]}, count);
+    for (std::size_t begin = 0; begin < found.count; begin += PairBlock::capacity) {
+      const PairView pairs = view(found, begin, std::min(found.count - begin, PairBlock::capacity));
       std::uint64_t near = ~find_apart_by_coarse_hulls(kind, pairs, swept_.coarse_steps().data(), bounds);
-      for (near &= ~std::uint64_t{0} >> (64 - count); near != 0; near &= near - 1) {
+      for (near &= ~std::uint64_t{0} >> (64 - pairs.count); near != 0; near &= near - 1) {
         const std::size_t k = begin + static_cast<std::size_t>(std::countr_zero(near));
         found.first[left] = found.first[k];
         found.second[left] = found.second[k];
-        for (std::vector<Index>& corner : corners) corner[left] = corner[k];
+        for (std::vector<Index>& corner : found.corners) corner[left] = corner[k];
         ++left;
       }
     }

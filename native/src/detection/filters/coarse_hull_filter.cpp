@@ -194,6 +194,7 @@ HWY_INLINE SingleMask are_coarse_hulls_apart(const CoarseHulls& hulls, const Coa
 template <EventKind kind>
 std::uint64_t find_apart_by_coarse_hulls_of_kind(const PairView& pairs, const CoarseStep* vertices,
                                                  const CoarseBounds& bounds) {
+  static_assert(PairBlock::capacity <= 64);
   const Singles d;
   std::uint64_t apart = 0;
   for (std::size_t begin = 0; begin < pairs.count; begin += hn::Lanes(d)) {

@@ -77,7 +77,6 @@ struct CoarseBounds {
 
 /// A bit for each pair: 1 only for pairs that find_apart_by_hulls flags too, and for nearly all of these. Takes twice
 /// as many pairs at a time. Bits beyond the pairs have no meaning.
-/// @param pairs at most 64
 std::uint64_t find_apart_by_coarse_hulls(EventKind kind, const PairView& pairs, const CoarseStep* vertices,
                                          const CoarseBounds& bounds);
 
