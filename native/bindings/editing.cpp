@@ -192,6 +192,10 @@ class Session : public std::enable_shared_from_this<Session> {
     return session_.surface();
   }
   double separation() const { return session_.separation(); }
+  Edges excluded() {
+    const InUse in_use(in_use_);
+    return as_rows(session_.excluded());
+  }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end) {
     const InUse in_use(in_use_);
@@ -367,7 +371,8 @@ void bind_editing(py::module_& module) {
       .def("least_distance", &Session::least_distance, py::arg("within"))
       .def_property_readonly("controls", &Session::controls)
       .def_property_readonly("surface", &Session::surface)
-      .def_property_readonly("separation", &Session::separation);
+      .def_property_readonly("separation", &Session::separation)
+      .def_property_readonly("excluded", &Session::excluded);
 }
 
 }  // namespace stiv::bindings

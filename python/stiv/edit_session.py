@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv import _native
 from stiv._native import CancelToken, Deformation
+from stiv.arrays import Indices
 from stiv.detection import Events
 from stiv.distances import LeastDistance, least_distance_of
 from stiv.edit_options import (
@@ -75,12 +76,12 @@ class EditSession:
     begins with ``start`` return a :class:`stiv.Job`; until it is done, other calls of the session raise InputError.
 
     A start that intersects is rejected, unless the intersecting pairs are excluded (`EditOptions.exclude`). Then the
-    number of excluded pairs that intersect never grows, and no other pair ever intersects. The volume that two closed
-    bodies share never exceeds that at the start of the session. The same holds for the area of an open body inside a
-    closed one, with the triangles' areas at the start. The depth of excluded pairs of two open bodies, or of one body,
-    has no limit, but collisions of neighboring triangles stop them from passing through each other. Bodies that always
-    intersect should be `ignored` pairs of the surface. Exclusion would almost fix them to each other, because other
-    triangles would intersect.
+    number of excluded pairs that intersect never grows, and no other pair ever intersects; see :attr:`excluded`. The
+    volume that two closed bodies share never exceeds that at the start of the session. The same holds for the area of
+    an open body inside a closed one, with the triangles' areas at the start. The depth of excluded pairs of two open
+    bodies, or of one body, has no limit, but collisions of neighboring triangles stop them from passing through each
+    other. Bodies that always intersect should be `ignored` pairs of the surface. Exclusion would almost fix them to
+    each other, because other triangles would intersect.
 
     Args:
         surface: triangles, (F, 3) integers, or a :class:`stiv.Surface`.
@@ -141,6 +142,15 @@ class EditSession:
     def separation(self) -> float:
         """Minimum distance between surfaces, world units."""
         return self._session.separation
+
+    @property
+    def excluded(self) -> Indices:
+        """Pairs of triangles that may intersect, (k, 2), smaller index first, in lexicographic order.
+
+        Those of the options, and neighbors of theirs that touch at the start. Two triangles touch if they are apart,
+        but nearer than coordinates can keep them.
+        """
+        return self._session.excluded
 
     def least_distance(self, *, within: bool = False) -> LeastDistance | None:
         """Return the least distance between bodies in the accepted state; ``within``: and within bodies.

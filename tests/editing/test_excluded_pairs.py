@@ -116,3 +116,28 @@ def test_one_and_two_threads_give_the_same_bits() -> None:
         for threads in (1, 2)
     )
     assert one.controls.tobytes() == two.controls.tobytes()
+
+
+def wedge_near_edge(distance: float) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles 2 and 3 share an edge, which pierces triangle 1 at this distance from its edge with 0. 2 misses 0."""
+    sheet = np.array([[-1, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0]], float)
+    wedge = np.array([[0, -1, distance - 1], [0, 1, distance + 1], [0.8, -0.3, 0.3], [-0.8, 0.3, -0.3]])
+    triangles = np.array([[0, 1, 2], [1, 0, 3], [4, 5, 6], [5, 4, 7]])
+    return triangles, np.concatenate([sheet, wedge]).astype(np.float32).astype(float)
+
+
+@pytest.mark.parametrize("distance", [2.0**-22, 2.0**-10])
+def test_an_intersection_passes_an_edge_only_if_it_touches_it(distance: float) -> None:
+    """Coordinates near 1 are stored as multiples of 2**-24, so a motion cannot keep a distance of 2**-22."""
+    triangles, start = wedge_near_edge(distance)
+    at_start = set(map(tuple, stiv.find_intersections(start, triangles).tolist()))
+    assert at_start == {(0, 3), (1, 2), (1, 3)}
+    session = stiv.EditSession(triangles, stiv.identity(8), start, stiv.EditOptions(exclude="intersecting"))
+    touches = distance < 1e-6
+    assert set(map(tuple, session.excluded.tolist())) == at_start | ({(0, 2)} if touches else set())
+    goal = start.copy()
+    goal[4:, 1] += 0.05
+    result = session.edit(goal)
+    left = set(map(tuple, stiv.find_intersections(result.surface, triangles).tolist()))
+    assert (result.status == "reached") == touches
+    assert left == ({(0, 2), (0, 3), (1, 2)} if touches else at_start)

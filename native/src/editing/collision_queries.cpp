@@ -57,7 +57,8 @@ CollisionQueries::CollisionQueries(const EditContext& context)
       centred_start_(context.centred_obstacles()),
       centred_end_(context.centred_obstacles()),
       guard_(std::make_unique<Guard>(context.shared_surface(), context)),
-      excluded_(context.shared_surface(), context.options().excluded),
+      excluded_(context.shared_surface(), context.options().excluded, *context.proximity().reference,
+                context.least_separation()),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
   if (!excluded_.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());

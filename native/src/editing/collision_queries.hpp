@@ -39,6 +39,8 @@ class CollisionQueries {
   /// Prunes cached candidates that the step does not bring close. Called when rounds toward another goal begin.
   void prune_cache(const Positions& from, const Positions& to, Execution& execution);
   void clear_cache() { guard_->cache.clear(); }
+  /// The pairs of triangles that may intersect, see ExcludedPairs.
+  const IndexPairs& excluded() const { return excluded_.pairs(); }
   /// A step with the obstacles, valid until the next query. With obstacles, other rows than those of vertices of the
   /// events are undefined, unless volumes need them.
   std::pair<const Positions&, const Positions&> at_events(const Events& events, const Positions& from,

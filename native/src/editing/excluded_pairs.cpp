@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "acceptance/clearance/triangle_distance.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -25,9 +26,38 @@ IndexPairs checked(const IndexPairs& pairs, Index triangle_count) {
   return ordered;
 }
 
+/// The triangles of a surface at rest.
+struct PlacedTriangles {
+  const Triangles& triangles;
+  const PositionsView& q;
+
+  std::array<Index, 3> corners(Index triangle) const {
+    return {triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
+  }
+
+  Eigen::AlignedBox3d box(Index triangle) const {
+    Eigen::AlignedBox3d box;
+    for (const Index corner : corners(triangle)) box.extend(Vector3(q.row(corner)));
+    return box;
+  }
+
+  bool share_a_corner(Index a, Index b) const {
+    const std::array<Index, 3> first = corners(a), second = corners(b);
+    return std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) != first.end();
+  }
+
+  /// Whether two triangles are apart, but nearer than a distance.
+  bool touch(Index a, Index b, double nearest) const {
+    const std::array<Index, 3> first = corners(a), second = corners(b);
+    return least_triangle_distance(first, second, q) < nearest &&
+           triangle_distance(first, second, q).distance < nearest && !triangles_intersect(first, second, q);
+  }
+};
+
 }  // namespace
 
-ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs)
+ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
+                             const PositionsView& start, double least)
     : surface_(std::move(surface)), pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
   if (pairs_.empty()) return;
   around_.resize(static_cast<std::size_t>(surface_->vertex_count()));
@@ -38,6 +68,42 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
+  add_touching(start, least);
+}
+
+void ExcludedPairs::add_touching(const PositionsView& start, double least) {
+  const PlacedTriangles placed{surface_->triangles(), start};
+  const double reach = least * least;
+  IndexPairs near;
+  for (const auto& [a, b] : pairs_) {
+    const std::vector<Index> others = with_neighbors(b);
+    for (const Index first : with_neighbors(a)) {
+      const Eigen::AlignedBox3d box = placed.box(first);
+      for (const Index second : others)
+        if (box.squaredExteriorDistance(placed.box(second)) < reach) near.push_back(std::minmax(first, second));
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  std::erase_if(near, [&](const auto& pair) {
+    const auto& [a, b] = pair;
+    return contains(a, b) || placed.share_a_corner(a, b) || !placed.touch(a, b, least);
+  });
+  const auto given = static_cast<std::ptrdiff_t>(pairs_.size());
+  pairs_.insert(pairs_.end(), near.begin(), near.end());
+  std::inplace_merge(pairs_.begin(), pairs_.begin() + given, pairs_.end());
+}
+
+/// A triangle and those that share a corner with it.
+std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
+  std::vector<Index> found;
+  for (int corner = 0; corner < 3; ++corner) {
+    const std::vector<Index>& around = around_[at(surface_->triangles()(triangle, corner))];
+    found.insert(found.end(), around.begin(), around.end());
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
 }
 
 bool ExcludedPairs::contains(Index a, Index b) const {

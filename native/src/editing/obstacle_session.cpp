@@ -132,6 +132,7 @@ class ObstacleSession final : public SessionImplementation {
   const Controls& controls() const override { return near_->session->controls(); }
   const Positions& surface() const override { return near_->session->surface(); }
   double separation() const override { return near_->session->separation(); }
+  const IndexPairs& excluded() const override { return near_->session->excluded(); }
   const Surface& topology() const override { return *surface_; }
 
  private:

@@ -163,6 +163,7 @@ class SurfaceSession final : public SessionImplementation {
   const Controls& controls() const override { return accepted_.controls; }
   const Positions& surface() const override { return accepted_.surface; }
   double separation() const override { return context_.options().separation; }
+  const IndexPairs& excluded() const override { return queries_.excluded(); }
   const Surface& topology() const override { return context_.surface(); }
 
  private:
@@ -402,6 +403,7 @@ std::optional<NearestTriangles> EditSession::least_distance(DistancePairs pairs)
   return implementation_->least_distance(pairs);
 }
 double EditSession::separation() const { return implementation_->separation(); }
+const IndexPairs& EditSession::excluded() const { return implementation_->excluded(); }
 const Surface& EditSession::topology() const { return implementation_->topology(); }
 
 }  // namespace stiv

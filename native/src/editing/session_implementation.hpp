@@ -31,6 +31,7 @@ class SessionImplementation {
   virtual const Controls& controls() const = 0;
   virtual const Positions& surface() const = 0;
   virtual double separation() const = 0;
+  virtual const IndexPairs& excluded() const = 0;
   virtual const Surface& topology() const = 0;
 };
 

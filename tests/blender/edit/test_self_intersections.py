@@ -75,3 +75,22 @@ def test_obstacles_that_intersect_each_other_do_not_block() -> None:
     edit.apply(shift(x=3.0))
     assert edit.write().passed
     assert intersecting() <= before
+
+
+def test_an_intersection_may_pass_an_edge_that_it_touches() -> None:
+    """An edge pierces a face at 2**-22 from its border, and single precision cannot keep it on that side."""
+    near = 2.0**-22
+    mesh = bpy.data.meshes.new("Wedge")
+    sheet = [(-1, 0, 0), (1, 0, 0), (0, 1, 0), (0, -1, 0)]
+    wedge = [(0, -1, near - 1), (0, 1, near + 1), (0.8, -0.3, 0.3), (-0.8, 0.3, -0.3)]
+    mesh.from_pydata([*sheet, *wedge], [], [(0, 1, 2), (1, 0, 3), (4, 5, 6), (5, 4, 7)])
+    ob = bpy.data.objects.new("Wedge", mesh)
+    bpy.context.collection.objects.link(ob)
+    for vertex in mesh.vertices:
+        vertex.select = vertex.index > 3
+    edit_mode(ob)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    assert edit.start_notes == ("Wedge intersects itself, 4 faces, left as it is",)
+    assert edit.apply(shift(y=0.05)).status == "reached"
+    assert edit.write().passed
+    assert len(intersecting()) == 3

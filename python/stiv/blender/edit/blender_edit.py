@@ -130,7 +130,7 @@ class BlenderEdit:
         """Notes about stale exclusions, intersections at the start that stay, seams, and users of a shared mesh."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
         notes = tuple(each.note for each in self.control_sets if each.note)
-        return (*dropped, *intersection_notes(self._solver.excluded), *notes)
+        return (*dropped, *intersection_notes(self._solver.intersecting), *notes)
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:

@@ -31,7 +31,8 @@ CALLS = 4  # of a session between two Jacobians of observed stacks
 class EditSolver:
     """Attributes: `control_sets`, `assembly` with the extra triangles of bent faces, and the `trail`.
 
-    excluded: the excluded pairs of the settings, and those at the start that needed no decision.
+    intersecting: the excluded pairs of the settings, and those at the start that needed no decision.
+    excluded: the same with pairs beside them that touch at the start.
     """
 
     def __init__(
@@ -40,7 +41,7 @@ class EditSolver:
         """Take the controls of all control sets at the start, (m, 3). Call `start` before anything else."""
         self.control_sets = tuple(control_sets)
         self._settings = settings
-        self.excluded = settings.excluded
+        self.intersecting = self.excluded = settings.excluded
         self._session: stiv.EditSession | None = None
         self._inputs: SessionInputs | None = None  # of the session, if the next edit may use it
         self._blocked, self._calls = False, 0
@@ -175,9 +176,12 @@ class EditSolver:
         except stiv.StartIntersectsError as error:
             if self._session is not None:
                 raise
-            self.excluded = exclude_undecided(self._settings.excluded, assembly, error.pairs, self._moving(assembly))
+            pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, self._moving(assembly))
+            self.intersecting = self.excluded = pairs
             opened = yield from self._make_session(assembly, make_deformation, controls)
         (self._session, self._deformation), self.assembly = opened, assembly
+        if self.excluded.pairs:
+            self.excluded = exclude_undecided(self.excluded, assembly, self.session.excluded, self._moving(assembly))
 
     def _make_session(
         self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats

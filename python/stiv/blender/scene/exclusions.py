@@ -30,7 +30,7 @@ def exclude(pairs: Sequence[FacePair], meshes: Sequence[VisibleMesh]) -> Exclusi
 def exclude_undecided(
     excluded: Exclusions, assembly: Assembly, found: Indices, together: Collection[str]
 ) -> Exclusions:
-    """Also exclude the intersecting pairs of triangles, (k, 2), that need no decision.
+    """Also exclude the pairs of triangles, (k, 2), that intersect or touch and need no decision.
 
     These are pairs within one object, and pairs of objects that move `together`.
     """
