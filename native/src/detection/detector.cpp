@@ -11,10 +11,10 @@ Detector::~Detector() = default;
 Detector::Detector(Detector&&) noexcept = default;
 Detector& Detector::operator=(Detector&&) noexcept = default;
 
-void Detector::prepare(const PositionsView& start, Execution& execution) {
+void Detector::prepare(const PositionsView& start, Proximity proximity, Execution& execution) {
   const FloatingPointScope floating_point;
   search_->surface().check_positions(start);
-  search_->prepare(start, execution);
+  search_->prepare({start, start, proximity}, execution);
 }
 
 Events Detector::find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution) {

@@ -26,7 +26,8 @@ class PairSearch {
  public:
   PairSearch(std::shared_ptr<const Surface> surface, DetectorOptions options);
 
-  void prepare(const PositionsView& start, const Execution& execution) { source_->prepare(start, execution); }
+  /// As CandidateSource.
+  void prepare(const Step& still, const Execution& execution) { source_->prepare(in_frames(still), execution); }
 
   /// As CandidateSource.
   void set_resting(Index count) { source_->set_resting(count); }

@@ -82,7 +82,15 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
   }
-  guard_->detector.prepare(context_.centred(surface, centred_start_, execution), execution);
+  prepare_searches(surface, execution);
+}
+
+/// Does what the first searches and tests from a surface would do for vertices that never move.
+void CollisionQueries::prepare_searches(const Positions& surface, Execution& execution) {
+  guard_->detector.prepare(context_.centred(surface, centred_start_, execution), context_.round_proximity(), execution);
+  if (context_.obstacles().rows() == 0) return;
+  end_.with_rest(surface);
+  prune_cache(surface, surface, execution);
 }
 
 std::pair<const Positions&, const Positions&> CollisionQueries::at_events(const Events& events, const Positions& from,

@@ -76,6 +76,7 @@ class CollisionQueries {
     IntersectionTest intersections;
   };
 
+  void prepare_searches(const Positions& surface, Execution& execution);
   void guard_pairs_apart_at(const Positions& accepted, Execution& execution);
   bool is_end_free(const PositionsView& from, const PositionsView& to, Execution& execution);
   bool passes_static_test(const Positions& from, const Positions& to, Execution& execution);

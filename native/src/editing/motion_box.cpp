@@ -10,6 +10,7 @@ namespace stiv {
 namespace {
 
 constexpr std::array margins{1.0, 0.5, 0.25, 0.125};  // in diagonals of the bounds
+constexpr double margins_around = 2;                  // of them on each side if no motion is known
 constexpr double margins_aside = 0.25;                // of them beside the motion
 constexpr double margins_ahead = 5;                   // more of them along it
 constexpr Index few_triangles = 1 << 16;              // near ones, few for a session
@@ -32,7 +33,7 @@ Eigen::AlignedBox3d box_around(const Eigen::AlignedBox3d& bounds, const Vector3&
   const Vector3 direction = length > 0 ? Vector3(motion / length) : Vector3(Vector3::Zero());
   for (const double fraction : margins) {
     const double margin = fraction * bounds.diagonal().norm();
-    box = grown(bounds, length > 0 ? margins_aside * margin : margin);
+    box = grown(bounds, (length > 0 ? margins_aside : margins_around) * margin);
     box.extend(box.translated(margins_ahead * margin * direction));
     Index near = 0;
     for (const auto& obstacle : obstacles) near += obstacle->count_near(box);

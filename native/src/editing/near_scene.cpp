@@ -35,6 +35,7 @@ UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& t
   std::vector<unsigned char> marks(count, 0);
   for (const Index triangle : triangles)
     for (const Index corner : obstacle.triangles().row(triangle)) marks[at(corner - first)] = 1;
+  used.vertices.reserve(at(std::count(marks.begin(), marks.end(), 1)));
   // Written only where a vertex is used, so that the memory of the others is never touched.
   const std::unique_ptr<Index[]> places(new Index[count]);
   for (std::size_t k = 0; k < count; ++k) {
@@ -102,7 +103,9 @@ class NearSceneBuilder {
 
   /// @param first number of the obstacle's first element in the whole scene
   static void append_numbers(const std::vector<Index>& added, Index first, std::vector<Index>& numbers) {
-    for (const Index number : added) numbers.push_back(first + number);
+    const std::size_t before = numbers.size();
+    numbers.resize(before + added.size());
+    for (std::size_t k = 0; k < added.size(); ++k) numbers[before + k] = first + added[k];
   }
 
   SurfaceDefinition definition_;

@@ -16,8 +16,10 @@ namespace stiv {
 
 namespace {
 
-constexpr int boxes_per_call = 4;   // then all obstacles are near, which bounds the number of repetitions
-constexpr double ticks_ahead = 12;  // of a drag: if they leave the box, the next one is prepared; it takes a few ticks
+constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
+// If so many more ticks of a drag leave the box, the next one is prepared. That takes many free ticks, or a third as
+// many with contacts.
+constexpr double free_ticks_ahead = 18, contact_ticks_ahead = 12;
 
 void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
   if (surface == nullptr || deformation == nullptr) throw InputError("a surface and a deformation are needed");
@@ -70,7 +72,7 @@ class ObstacleSession final : public SessionImplementation {
   }
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
     EditResult result = carry_out(goal, execution, [&] { return near_->session->drag(goal, execution, hand_over); });
-    if (result.status != EditStatus::cancelled) look_ahead(execution.threads());
+    if (result.status != EditStatus::cancelled) look_ahead(!result.events.empty(), execution.threads());
     return result;
   }
   EditResult settle(Execution& execution) override {
@@ -206,7 +208,12 @@ class ObstacleSession final : public SessionImplementation {
 
   /// Prepares the session in the next box of a drag that is about to leave the present one. Which box depends on
   /// accepted states alone, and not on the number of threads.
-  void look_ahead(int threads) {
+  void look_ahead(bool has_contacts, int threads) {
+    prepare_next(has_contacts ? contact_ticks_ahead : free_ticks_ahead, threads);
+    if (next_ && has_contacts) next_->let_calls_go_first();
+  }
+
+  void prepare_next(double ticks_ahead, int threads) {
     if (!options_.excluded.empty() || !options_.overlapping.empty()) return;  // compared with where a session began
     const Eigen::AlignedBox3d& now = bounds_;
     if (now.isEmpty() || is_inside(after(now, ticks_ahead))) return;

@@ -37,6 +37,7 @@ class SurfaceSession final : public SessionImplementation {
         queries_(context_) {
     execution.check();
     restore(accepted, goal, execution);
+    if (context_.obstacles().rows() > 0) context_.region_areas(accepted_.surface, execution);  // keeps the obstacles'
   }
 
   void restore(const Controls& controls, const Controls& goal) override {

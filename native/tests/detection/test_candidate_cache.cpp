@@ -109,13 +109,23 @@ TEST_CASE("candidate cache: pruning leaves the pairs that meet during the step, 
   CHECK(met > 20);
 }
 
-TEST_CASE("candidate cache: resting vertices change no events and no candidates") {
+TEST_CASE("candidate cache: resting vertices, prepared elsewhere or not, change no events and no candidates") {
+  bool is_prepared = false;
+  SUBCASE("prepared") { is_prepared = true; }
+  SUBCASE("not prepared") {}
   constexpr Index size = 9, resting = size * size;
   const MovingScene scene = stirred_sheets(size, 3, 0.06, 3);
   const Positions rest = scene.start.bottomRows(resting);
   Detector detector(scene.surface), other(scene.surface);
   CandidateCache cache(detector, resting), expected(other);
   Execution execution(2);
+  if (is_prepared) {
+    Positions elsewhere = scene.start.array() + 0.01;
+    elsewhere.bottomRows(resting) = rest;
+    detector.prepare(elsewhere, proximity, execution);
+    cache.prune(elsewhere, elsewhere, proximity, execution);
+    CHECK(cached_pairs(*scene.surface, cache).empty());
+  }
   std::size_t events = 0;
   for (const double fraction : {1.0, 0.3, 1.5, -0.5, 1.0}) {
     Positions end = scene.start + fraction * (scene.end - scene.start);

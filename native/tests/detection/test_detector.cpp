@@ -109,10 +109,10 @@ TEST_CASE("detector: prepared trees find the same events, and refuse positions o
   const MovingScene scene = falling_vertex();
   Execution execution(1);
   Detector prepared(scene.surface);
-  prepared.prepare(scene.start, execution);
+  prepared.prepare(scene.start, {0.1, 0.5}, execution);
   CHECK(prepared.find(scene.start, scene.end, {0.1, 0.5}, execution).size() ==
         Detector(scene.surface).find(scene.start, scene.end, {0.1, 0.5}, execution).size());
-  CHECK_THROWS_AS(prepared.prepare(scene.start.topRows(3), execution), InputError);
+  CHECK_THROWS_AS(prepared.prepare(scene.start.topRows(3), {}, execution), InputError);
 }
 
 TEST_CASE("detector: a loose vertex that falls through a face is one event") {

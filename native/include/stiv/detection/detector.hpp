@@ -46,7 +46,8 @@ class Detector {
   Detector& operator=(Detector&&) noexcept;
 
   /// Builds the trees now that the first step from `start`, (N, 3), would build. Results do not depend on it.
-  void prepare(const PositionsView& start, Execution& execution);
+  /// @param proximity of later steps; with any other, they take longer
+  void prepare(const PositionsView& start, Proximity proximity, Execution& execution);
 
   /// All events of the step start -> end, (N, 3) each, sorted by kind and vertices.
   Events find(const PositionsView& start, const PositionsView& end, Proximity proximity, Execution& execution);

@@ -53,11 +53,11 @@ void Primitives::note_changes(const std::vector<unsigned char>& bodies) {
 
 void Primitives::update(const std::vector<PackedBox>& vertices, const Execution& execution) {
   if (!tree_) {
-    std::vector<Bounds> boxes(corners_.size());
+    std::vector<NumberedPoint> centres(corners_.size());
     execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
-      for (Index k = begin; k < end; ++k) boxes[at(k)] = box_of(corners(k), vertices).bounds();
+      for (Index k = begin; k < end; ++k) centres[at(k)] = centre_of(box_of(corners(k), vertices).bounds(), k);
     });
-    tree_.emplace(centres_of(boxes), bodies_, CornerRows(), execution);
+    tree_.emplace(centres, bodies_, CornerRows(), execution);
     static_assert(sizeof(corners_[0]) == 3 * sizeof(Index));
     block_corners_ = tree_->block_corners({corners_.empty() ? nullptr : corners_[0].data(), 3});
   }

@@ -64,6 +64,11 @@ class BlockList {
   explicit BlockList(std::size_t block) : block_(block) {}
 
   void add(std::span<const NumberedPoint> points) {
+    const std::size_t blocks = (points.size() + block_ - 1) / block_;
+    if (places_.empty()) {  // mostly all of the list
+      places_.reserve(blocks * block_);
+      centres_.reserve(blocks);
+    }
     append_blocks(points, block_, places_);
     for (std::size_t first = 0; first < points.size(); first += block_)
       add_centre(points.subspan(first, std::min(block_, points.size() - first)));

@@ -86,15 +86,20 @@ class TaskList {
 
 }  // namespace
 
-std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes) {
-  std::vector<NumberedPoint> centres(boxes.size());
-  for (std::size_t k = 0; k < boxes.size(); ++k) {
-    centres[k].number = static_cast<Index>(k);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float middle = boxes[k].low[axis] / 2 + boxes[k].high[axis] / 2;
-      centres[k].position[axis] = std::isfinite(middle) ? middle : 0;
-    }
+NumberedPoint centre_of(const Bounds& box, Index number) {
+  NumberedPoint centre;
+  centre.number = number;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float middle = box.low[axis] / 2 + box.high[axis] / 2;
+    centre.position[axis] = std::isfinite(middle) ? middle : 0;
   }
+  return centre;
+}
+
+std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes) {
+  std::vector<NumberedPoint> centres;
+  centres.reserve(boxes.size());
+  for (const Bounds& box : boxes) centres.push_back(centre_of(box, static_cast<Index>(centres.size())));
   return centres;
 }
 

@@ -176,7 +176,9 @@ class Bvh {
   std::vector<std::vector<Index>> group_nodes_;  // of each level: the nodes above primitives of these, ascending
 };
 
-/// Centers of boxes, zero where one is infinite.
+/// The center of a box, zero where it is infinite.
+NumberedPoint centre_of(const Bounds& box, Index number);
+/// The same for each of several boxes.
 std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>

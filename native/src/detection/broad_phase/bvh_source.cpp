@@ -44,10 +44,10 @@ class BvhSource final : public CandidateSource {
     std::iota(numbers_.begin(), numbers_.end(), 0);
   }
 
-  void prepare(const PositionsView& start, const Execution& execution) override {
-    vertices_.prepare(start, execution);
+  void prepare(const Step& still, const Execution& execution) override {
+    vertices_.prepare(still.start, execution);
     const auto prepare = [&](auto& tree) {
-      tree.prepare(start, execution);
+      tree.prepare(still.start, execution);
       tree.prepare_later_updates(swept_.changing());
     };
     execution.for_chunks(2, 1, [&](Index, Index, Index kind) {  // most of a tree is built on one thread
@@ -58,26 +58,20 @@ class BvhSource final : public CandidateSource {
     });
     vertices_.prepare_later_updates(swept_.changing());
     vertices_.drop_curve();
+    const bool has_resting = swept_.changing() < surface_.vertex_count();
+    if (has_resting && !refitted_) refit(still, SweptVertices::Reuse::forbidden, execution);
   }
 
   void set_resting(Index count) override { swept_.set_resting(count); }
 
   void update(const Step& step, const Execution& execution) override {
     separation_ = step.proximity.separation;
-    // If this is cancelled, the next step starts from scratch.
-    const bool refitted = std::exchange(refitted_, false), collected = std::exchange(collected_, false);
-    SweptVertices::Change change =
-        swept_.update(step, execution, collected ? SweptVertices::Reuse::allowed : SweptVertices::Reuse::forbidden);
-    if (!refitted) change = SweptVertices::Change::all;
-    if (change == SweptVertices::Change::none) {
-      refitted_ = collected_ = true;
+    const bool collected = std::exchange(collected_, false);
+    const auto reuse = collected ? SweptVertices::Reuse::allowed : SweptVertices::Reuse::forbidden;
+    if (refit(step, reuse, execution) == SweptVertices::Change::none) {
+      collected_ = true;
       return;
     }
-    vertices_.update(step, swept_, change, execution);
-    edges_.update(step, swept_, change, execution);
-    faces_.update(step, swept_, change, execution);
-    vertices_.drop_curve();
-    refitted_ = true;
     bodies_.frames = swept_.body_frames();
     collect(execution);
   }
@@ -116,6 +110,21 @@ class BvhSource final : public CandidateSource {
 
  private:
   static constexpr std::size_t batch_size = 4096;
+
+  /// Brings the trees up to date. If this is cancelled, the next step starts from scratch.
+  SweptVertices::Change refit(const Step& step, SweptVertices::Reuse reuse, const Execution& execution) {
+    const bool refitted = std::exchange(refitted_, false);
+    SweptVertices::Change change = swept_.update(step, execution, reuse);
+    if (!refitted) change = SweptVertices::Change::all;
+    if (change != SweptVertices::Change::none) {
+      vertices_.update(step, swept_, change, execution);
+      edges_.update(step, swept_, change, execution);
+      faces_.update(step, swept_, change, execution);
+      vertices_.drop_curve();
+    }
+    refitted_ = true;
+    return change;
+  }
 
   /// Tasks of one kind and their results.
   struct Pairs {

@@ -28,8 +28,9 @@ class CandidateSource {
   using Sink = std::function<void(std::span<Candidate>)>;
 
   virtual ~CandidateSource() = default;
-  /// Does the part of the first update that depends on its start alone.
-  virtual void prepare(const PositionsView&, const Execution&) {}
+  /// Does the part of the first update that depends on its start alone, given a step that ends there. With resting
+  /// vertices, that includes all boxes.
+  virtual void prepare(const Step&, const Execution&) {}
   /// Promises that the last vertices, this many, have the same positions in all steps.
   virtual void set_resting(Index) {}
   /// @throws InputError as Surface::check_positions, except for the shape
