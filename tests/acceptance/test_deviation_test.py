@@ -46,3 +46,21 @@ def test_there_is_none_with_excluded_pairs_or_obstacles() -> None:
     assert session.deviation_test() is None
     excluded = stiv.EditOptions(exclude=np.array([[0, 1]], np.int32))
     assert stiv.EditSession(surface, stiv.rigid(BALL.vertices), rest, excluded).deviation_test() is None
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, 1e-80, 1e80])
+def test_invalid_coordinates_are_refused_wherever_they_are(wrong: float) -> None:
+    """1e-80 lies within the reach of a coordinate of 0."""
+    vertices = np.concatenate([BALL.vertices, np.zeros((1, 3))])
+    surface = stiv.Surface(FACES, COUNT + 1, bodies=[stiv.Body("Ball", "rigid")])
+    session = stiv.EditSession(surface, stiv.rigid(vertices), stiv.rigid_rest_controls(vertices))
+    near = session.deviation_test()
+    assert near is not None
+    assert near.is_free(session.surface) is True
+    q = session.surface.copy()
+    assert q[COUNT, 2] == 0
+    q[COUNT, 2] = wrong
+    with pytest.raises(stiv.InputError, match="coordinate"):
+        near.is_free(q)
+    with pytest.raises(stiv.InputError, match="rows"):
+        near.is_free(session.surface[1:])

@@ -3,17 +3,20 @@
 #include "acceptance/intersection/deviation_test.hpp"
 
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "acceptance/intersection/candidate_test.hpp"
+#include "stiv/coordinate_range.hpp"
 
 namespace stiv {
 
 namespace {
 
 PackedPoints packed(const PositionsView& q) {
-  PackedPoints points(static_cast<std::size_t>(q.rows()));
-  for (Index row = 0; row < q.rows(); ++row) points[at(row)] = {{q(row, 0), q(row, 1), q(row, 2), 0}};
+  PackedPoints points;
+  points.reserve(static_cast<std::size_t>(q.rows()));  // not set to zero first
+  for (Index row = 0; row < q.rows(); ++row) points.push_back({{q(row, 0), q(row, 1), q(row, 2), 0}});
   return points;
 }
 
@@ -43,8 +46,16 @@ std::optional<bool> DeviationTest::Implementation::is_free(const PositionsView& 
 
 /// A difference is rounded, so that it may lie half a unit in the last place above the reach. The pairs hold for this.
 bool DeviationTest::Implementation::is_within_reach(const PositionsView& q) const {
-  surface_->check_positions(q);
-  return q.rows() == 0 || (q - accepted_).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= near_.reach;
+  bool is_near = q.rows() == accepted_.rows(), is_valid = is_near;
+  if (is_near) {
+    const double *shown = q.data(), *accepted = accepted_.data();
+    for (std::ptrdiff_t k = 0; k < accepted_.size(); ++k) {
+      is_near &= std::abs(shown[k] - accepted[k]) <= near_.reach;
+      is_valid &= is_valid_coordinate(shown[k]);
+    }
+  }
+  if (!is_valid) surface_->check_positions(q);
+  return is_near;
 }
 
 bool DeviationTest::Implementation::are_stars_free(const PositionsView& q, const PackedPoints& points,

@@ -27,6 +27,7 @@ from stiv.blender.scene.triangulation_flips import (
 )
 from stiv.blender.settings import Exclusions
 from stiv.blender.verify.both_diagonals import BothDiagonals
+from stiv.points import largest_difference
 
 SPLITTING = ("TRIANGULATE", "NODES")  # modifiers that may split quads along another diagonal as they bend
 StepTest = Callable[[Floats, Floats], bool]
@@ -248,7 +249,7 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
     for number, mesh in enumerate(assembly.meshes):
         control_set = slice(assembly.starts[number], assembly.starts[number + 1])
         whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
-        difference = float(np.abs(meshes[number] - whole).max(initial=0.0))
+        difference = largest_difference(meshes[number], whole)
         if difference and not difference <= evaluation_tolerance(accepted[control_set]):  # mostly 0 for obstacles
             return f"{mesh.owner.name}: Blender shows it {difference:.3g} away from the solved position"
     return ""
