@@ -15,6 +15,7 @@ from stiv.blender.controls.points import to_single
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.scene.evaluations import SHOWS_PARENT
 from stiv.blender.scene.mesh_reading import read_corner_vertices, read_creases, read_edges, read_faces, read_positions
+from stiv.blender.scene.mesh_writing import write_positions
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings, LoopSurface
 
@@ -143,8 +144,7 @@ def _is_stale(shown: Singles, wanted: Singles) -> bool:
 def _write(refined: bpy.types.Object, local: Singles) -> None:
     if len(refined.data.vertices) != len(local):
         raise SceneChangedError(f"{refined.name} changed its number of vertices")
-    refined.data.vertices.foreach_set("co", local.ravel())
-    refined.data.update()
+    write_positions(refined.data, local)
 
 
 def _rebuild(cage: bpy.types.Mesh, mesh: bpy.types.Mesh, refinement: Refinement, local: Singles) -> None:
