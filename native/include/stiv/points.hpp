@@ -27,7 +27,7 @@ double largest_difference(const PositionsView& first, const PositionsView& secon
 using QuadCorners = Eigen::Matrix<Index, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// The quads, ascending, that are not certainly open along the first diagonal: the cosine of the angle between the
-/// normals of their halves may be `cosine` or less, or a half is no higher above the diagonal than `narrow` times the
+/// normals of their halves may be `cosine` or less, or a half rises above the diagonal by at most `narrow` times the
 /// largest coordinate. In single precision, as applications decide.
 /// @throws InputError if a corner is not a point
 std::vector<Index> find_folded(const SinglePositionsView& points, const Eigen::Ref<const QuadCorners>& corners,

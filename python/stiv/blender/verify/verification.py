@@ -30,7 +30,7 @@ from stiv.blender.verify.both_diagonals import BothDiagonals
 from stiv.points import largest_difference
 
 SPLITTING = ("TRIANGULATE", "NODES")  # modifiers that may split quads along another diagonal as they bend
-SAMPLED = 16  # one of so many points mostly shows that a surface is as large as needed
+SAMPLED = 16  # one point of 16 mostly shows that a surface is as large as needed
 StepTest = Callable[[Floats, Floats], bool]
 
 
@@ -257,7 +257,7 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
 
 
 def _exceeds_tolerance(difference: float, points: Floats) -> bool:
-    """Do evaluations of points, (n, 3), differ by more than rounding? The tolerance of some points is no greater."""
+    """Do evaluations of points, (n, 3), differ by more than rounding? The tolerance of some points is not greater."""
     if difference <= evaluation_tolerance(points[::SAMPLED]):
         return False
     return not difference <= evaluation_tolerance(points)
