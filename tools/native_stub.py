@@ -22,7 +22,7 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import Annotated, Any
 
-from numpy import float64, int32
+from numpy import float32, float64, int32
 from numpy.typing import ArrayLike, NDArray
 
 class InputError(ValueError): ...

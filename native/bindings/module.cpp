@@ -71,4 +71,5 @@ PYBIND11_MODULE(_native, module) {
   stiv::bindings::bind_acceptance(module);
   stiv::bindings::bind_editing(module);
   stiv::bindings::bind_repair(module);
+  stiv::bindings::bind_points(module);
 }

@@ -13,6 +13,7 @@ void bind_detection(pybind11::module_& module);
 void bind_acceptance(pybind11::module_& module);
 void bind_editing(pybind11::module_& module);
 void bind_repair(pybind11::module_& module);
+void bind_points(pybind11::module_& module);
 void bind_vector_target(pybind11::module_& module);
 
 }  // namespace stiv::bindings

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from enum import Enum
 from typing import Annotated, Any
 
-from numpy import float64, int32
+from numpy import float32, float64, int32
 from numpy.typing import ArrayLike, NDArray
 
 class InputError(ValueError): ...
@@ -417,6 +417,9 @@ def expand(
     cancel: CancelToken | None = None,
     progress: Any = None,
 ) -> dict[str, Any]: ...
+def find_folded(
+    points: Annotated[ArrayLike, float32], corners: Annotated[ArrayLike, int32], cosine: float, narrow: float
+) -> NDArray[int32]: ...
 def find_intersections(
     surface: Surface, positions: Annotated[NDArray[float64], "[m, 3]"], threads: int
 ) -> Annotated[NDArray[int32], "[m, 2]"]: ...
@@ -432,6 +435,7 @@ def is_step_free(
     threads: int,
 ) -> bool: ...
 def laplacian(handles: Handles) -> Deformation: ...
+def largest_difference(first: Annotated[ArrayLike, float64], second: Annotated[ArrayLike, float64]) -> float: ...
 def lattice(
     lattice: Lattice,
     rest_vertices: Annotated[ArrayLike, float64, "[m, 3]"],
@@ -516,4 +520,10 @@ def times_of_impact(
     separation: float,
     threads: int,
 ) -> Annotated[NDArray[float64], "[m, 1]"]: ...
+def transform_points(
+    map: Annotated[ArrayLike, float64, "[3, 4]"], points: Annotated[ArrayLike, float64]
+) -> Annotated[NDArray[float64], "[m, 3]"]: ...
+def transform_single_points(
+    map: Annotated[ArrayLike, float64, "[3, 4]"], points: Annotated[ArrayLike, float32]
+) -> Annotated[NDArray[float64], "[m, 3]"]: ...
 def vector_target() -> VectorTarget: ...

@@ -4,7 +4,7 @@
 from numpy.typing import ArrayLike
 
 from stiv import _native
-from stiv.arrays import Floats, Indices, as_count, as_floats, as_number
+from stiv.arrays import Floats, Indices, as_count, as_floats, as_number, as_reals
 from stiv.surface import Surface, as_surface
 
 
@@ -101,7 +101,7 @@ class DeviationTest:
 
         The answer is that of `find_intersections`, with loose edges and vertices. Raises InputError as it does.
         """
-        return self._native.is_free(as_floats(vertices, "vertices", (None, 3)), self._threads)
+        return self._native.is_free(as_reals(vertices, "vertices", (None, 3)), self._threads)
 
 
 class StepCheck:

@@ -13,11 +13,11 @@ namespace stiv {
 class DeviationTest::Implementation {
  public:
   /// @param accepted positions without intersections
-  /// @param near complete for these positions
-  Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Stars> stars, Positions accepted,
-                 NearPairs near);
+  /// @param near complete for these positions; neither changes
+  Implementation(std::shared_ptr<const Surface> surface, std::shared_ptr<const Stars> stars,
+                 std::shared_ptr<const Positions> accepted, std::shared_ptr<const NearPairs> near);
 
-  double reach() const { return near_.reach; }
+  double reach() const { return near_->reach; }
   std::optional<bool> is_free(const PositionsView& q, const Execution& execution) const;
 
  private:
@@ -28,8 +28,8 @@ class DeviationTest::Implementation {
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Stars> stars_;
-  Positions accepted_;
-  NearPairs near_;
+  std::shared_ptr<const Positions> accepted_;
+  std::shared_ptr<const NearPairs> near_;
 };
 
 }  // namespace stiv

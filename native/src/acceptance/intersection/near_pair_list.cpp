@@ -36,11 +36,11 @@ std::vector<unsigned char> NearPairList::begin(const PositionsView& q, const std
                                                const Execution& execution) {
   const double reach = reach_near(q, moved);
   reach_ = moved.empty() ? reach : std::max(reach_, reach);
-  if (moved.empty() || !is_complete_ || near_.reach != reach_) return {};
+  if (moved.empty() || !is_complete_ || near_->reach != reach_) return {};
   std::vector<unsigned char> searched = moved;
   execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index vertex = begin; vertex < end; ++vertex)
-      if (q.row(vertex) != accepted_.row(vertex)) searched[at(vertex)] = 1;
+      if (q.row(vertex) != accepted_->row(vertex)) searched[at(vertex)] = 1;
   });
   return searched;
 }
@@ -48,22 +48,30 @@ std::vector<unsigned char> NearPairList::begin(const PositionsView& q, const std
 void NearPairList::accept(const PositionsView& q, const std::vector<unsigned char>& searched, const Found& found,
                           const std::vector<unsigned char>& proofs, const Execution& execution) {
   is_complete_ = false;
-  test_.reset();
-  std::erase_if(near_.pairs, [&](const CornerPair& pair) {
+  leave_to_test();
+  std::erase_if(near_->pairs, [&](const CornerPair& pair) {
     return searched.empty() || has_marked(pair.first, searched) || has_marked(pair.second, searched);
   });
-  std::ranges::copy_if(found.triangles, std::back_inserter(near_.pairs),
+  std::ranges::copy_if(found.triangles, std::back_inserter(near_->pairs),
                        [this](const CornerPair& pair) { return !is_in_star(pair); });
-  near_.pairs.insert(near_.pairs.end(), found.loose.begin(), found.loose.end());
-  std::erase_if(near_.stars, [&](Index vertex) { return stars_->has_moved(vertex, searched); });
+  near_->pairs.insert(near_->pairs.end(), found.loose.begin(), found.loose.end());
+  std::erase_if(near_->stars, [&](Index vertex) { return stars_->has_moved(vertex, searched); });
   const std::vector<Index> open = stars_->find_open(proofs, searched);
-  near_.stars.insert(near_.stars.end(), open.begin(), open.end());
-  near_.reach = reach_;
-  accepted_.resize(q.rows(), 3);
+  near_->stars.insert(near_->stars.end(), open.begin(), open.end());
+  near_->reach = reach_;
+  accepted_->resize(q.rows(), 3);
   execution.for_chunks(static_cast<Index>(q.rows()), chunk_size, [&](Index begin, Index end, Index) {
-    accepted_.middleRows(begin, end - begin) = q.middleRows(begin, end - begin);
+    accepted_->middleRows(begin, end - begin) = q.middleRows(begin, end - begin);
   });
   is_complete_ = true;
+}
+
+/// The test reads its positions and pairs on any thread, for as long as it is used.
+void NearPairList::leave_to_test() {
+  if (!test_) return;
+  near_ = std::make_shared<NearPairs>(*near_);
+  accepted_ = std::make_shared<Positions>();
+  test_.reset();
 }
 
 /// All triangles at a vertex with a link belong to its star.
@@ -74,7 +82,7 @@ bool NearPairList::is_in_star(const CornerPair& pair) const {
 }
 
 std::shared_ptr<const DeviationTest> NearPairList::test_near(const PositionsView& q) const {
-  if (!is_complete_ || accepted_.rows() != q.rows() || accepted_ != q) return nullptr;
+  if (!is_complete_ || accepted_->rows() != q.rows() || *accepted_ != q) return nullptr;
   if (!test_)
     test_ = std::make_shared<const DeviationTest>(
         std::make_unique<const DeviationTest::Implementation>(surface_, stars_, accepted_, near_));

@@ -16,6 +16,8 @@ class NearPairList {
  public:
   NearPairList(std::shared_ptr<const Surface> surface, std::shared_ptr<const Stars> stars)
       : surface_(std::move(surface)), stars_(std::move(stars)) {}
+  NearPairList(const NearPairList&) = delete;
+  NearPairList& operator=(const NearPairList&) = delete;
 
   /// Begins a test.
   /// @param moved as in IntersectionTest::is_free
@@ -45,15 +47,16 @@ class NearPairList {
 
  private:
   double reach_near(const PositionsView& q, const std::vector<unsigned char>& moved) const;
+  void leave_to_test();
   bool is_in_star(const CornerPair& pair) const;
 
   std::shared_ptr<const Surface> surface_;
   std::shared_ptr<const Stars> stars_;
   double reach_ = 0;
-  Positions accepted_;
-  NearPairs near_;            ///< of `accepted_`
+  std::shared_ptr<Positions> accepted_ = std::make_shared<Positions>();
+  std::shared_ptr<NearPairs> near_ = std::make_shared<NearPairs>();  ///< of `accepted_`
   bool is_complete_ = false;  ///< false before the first surface, and after an interruption of `accept`
-  mutable std::shared_ptr<const DeviationTest> test_;  ///< near `accepted_`, made when first wanted
+  mutable std::shared_ptr<const DeviationTest> test_;  ///< shares both, made when first wanted
 };
 
 }  // namespace stiv

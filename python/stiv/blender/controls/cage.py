@@ -21,6 +21,7 @@ from stiv.blender.controls.shared_meshes import sharing_note
 from stiv.blender.scene.arrays import Flags, Floats, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.scene.evaluations import is_edited
 from stiv.blender.scene.mesh_reading import read_cage, read_edges
+from stiv.blender.scene.mesh_writing import write_positions
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
 
@@ -124,16 +125,11 @@ def _write_local(ob: bpy.types.Object, local: Singles, keys: KeyEditing | None) 
     elif keys is not None:
         keys.write(ob, local)
     else:
-        _write_mesh(ob.data, local)
+        write_positions(ob.data, local)
 
 
 def _vertex_count(ob: bpy.types.Object) -> int:
     return len(bmesh.from_edit_mesh(ob.data).verts) if is_edited(ob) else len(ob.data.vertices)
-
-
-def _write_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:
-    mesh.vertices.foreach_set("co", local.ravel())
-    mesh.update()
 
 
 def _write_edit_mesh(mesh: bpy.types.Mesh, local: Singles) -> None:

@@ -14,7 +14,8 @@ from stiv.blender.controls.editable import check_data
 from stiv.blender.controls.points import to_single
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
 from stiv.blender.scene.evaluations import SHOWS_PARENT
-from stiv.blender.scene.mesh_reading import read_creases, read_edges, read_faces
+from stiv.blender.scene.mesh_reading import read_corner_vertices, read_creases, read_edges, read_faces, read_positions
+from stiv.blender.scene.mesh_writing import write_positions
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings, LoopSurface
 
@@ -105,7 +106,7 @@ def refined_writer(cage: bpy.types.Object, local: Singles, settings: EditSetting
     if chosen is None:
         return None
     refined, refinement = bpy.data.objects[chosen.object], refine(cage, chosen)
-    frame, shown = as_matrix(refined.matrix_world), read_collection(refined.data.vertices, "co", 3, np.float32)
+    frame, shown = as_matrix(refined.matrix_world), read_positions(refined.data)
     if _is_stale(shown, refined_points(refinement, transform_points(as_matrix(cage.matrix_world), local), frame)):
         raise InputError(f'{refined.name}: is older than its cage "{cage.name}"; use Refresh')
     return RefinedWriter(ObjectReference.of(refined), refinement, frame, shown)
@@ -122,8 +123,8 @@ def refresh(cage: bpy.types.Object, refined: bpy.types.Object, chosen: LoopSurfa
     positions = read_collection(cage.data.vertices, "co", 3, np.float32)
     world = transform_points(as_matrix(cage.matrix_world), positions)
     local = refined_points(refinement, world, as_matrix(refined.matrix_world))
-    shown = read_collection(refined.data.vertices, "co", 3, np.float32)
-    corners = read_collection(refined.data.loops, "vertex_index", 1, np.int32)
+    shown = read_positions(refined.data)
+    corners = read_corner_vertices(refined.data)
     if not np.array_equal(corners, refinement.triangles.ravel()):
         _rebuild(cage.data, refined.data, refinement, local)
     elif _is_stale(shown, local):
@@ -143,8 +144,7 @@ def _is_stale(shown: Singles, wanted: Singles) -> bool:
 def _write(refined: bpy.types.Object, local: Singles) -> None:
     if len(refined.data.vertices) != len(local):
         raise SceneChangedError(f"{refined.name} changed its number of vertices")
-    refined.data.vertices.foreach_set("co", local.ravel())
-    refined.data.update()
+    write_positions(refined.data, local)
 
 
 def _rebuild(cage: bpy.types.Mesh, mesh: bpy.types.Mesh, refinement: Refinement, local: Singles) -> None:

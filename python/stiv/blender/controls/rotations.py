@@ -92,6 +92,8 @@ def fixed_point(matrix: Floats) -> Floats:
     Rounded to ten digits, so that all rotations about one axis give the same point.
     """
     moves = np.eye(3) - matrix[:3, :3]
+    if not moves.any():
+        return np.zeros(3)
     point: Floats = np.linalg.pinv(moves, rcond=1e-9) @ matrix[:3, 3]
     residual = np.abs(moves @ point - matrix[:3, 3]).max()
     largest = float(np.abs(point).max())

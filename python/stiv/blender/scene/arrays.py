@@ -9,6 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from stiv.points import apply_linear, transform_points
+
+__all__ = [
+    "Flags", "Floats", "Indices", "Singles", "apply_linear", "as_matrix", "diagonal_of", "digest", "extents", "invert",
+    "islands", "read_collection", "to_local", "transform_points",
+]  # fmt: skip
+
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Indices = NDArray[np.int32]
@@ -18,19 +25,6 @@ Flags = NDArray[np.bool_]
 def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:
     """Blender's 4x4 matrix, or any nested sequence, in double precision."""
     return np.array([list(row) for row in matrix], dtype=np.float64)
-
-
-def transform_points(matrix: Floats, points: NDArray[Any]) -> Floats:
-    """Apply an affine map, (4, 4), to points, (n, 3)."""
-    return apply_linear(matrix[:3, :3], np.asarray(points, np.float64)) + matrix[:3, 3]
-
-
-def apply_linear(matrix: Floats, vectors: Floats) -> Floats:
-    """Apply a linear map, (3, 3), to vectors, (n, 3).
-
-    A matrix product would wake the threads of NumPy's BLAS, which then spin for 30 ms beside the solver's.
-    """
-    return np.asarray(np.einsum("ij,kj->ik", vectors, matrix))
 
 
 def invert(matrix: Floats) -> Floats:

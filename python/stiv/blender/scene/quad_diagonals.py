@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.points import find_folded
 
 CLEAR = 1e-3  # cosine of the angle between the halves above which rounding cannot decide
 # Height of a half above the diagonal, in the largest coordinate, above which it cannot either: where Blender knows the
@@ -54,11 +55,12 @@ class QuadDiagonals:
 
     def find_uncertain(self, local: Singles) -> Indices:
         """The quads, (u,), that Blender may split along the diagonal that is not known, at these positions, (n, 3)."""
-        return np.flatnonzero(self._folds(local, CLEAR) | self.second).astype(np.int32)
+        folded = find_folded(local, self.corners, CLEAR, NARROW)
+        return np.union1d(folded, np.flatnonzero(self.second)).astype(np.int32) if self.second.any() else folded
 
     def find_bent(self, local: Singles, cosine: float) -> Indices:
         """The quads whose halves along the first diagonal have a smaller cosine of the angle between their normals."""
-        return np.flatnonzero(self._folds(local, cosine)).astype(np.int32)
+        return find_folded(local, self.corners, cosine, NARROW)
 
     def other_triangles(self, quads: Indices) -> Indices:
         """The triangles, (2 u, 3), of quads split along the diagonal that is not known."""
@@ -66,28 +68,3 @@ class QuadDiagonals:
         along_first = np.stack([a, b, c, a, c, d], axis=1)
         along_second = np.stack([a, b, d, b, c, d], axis=1)
         return np.where(self.second[quads][:, None], along_first, along_second).reshape(-1, 3)
-
-    def _folds(self, local: Singles, cosine: float) -> NDArray[np.bool_]:
-        if self.corners.size == 0:
-            return np.empty(0, np.bool_)
-        columns = np.ascontiguousarray(local.T)
-        one, two, diagonal = self._normals(columns)
-        sizes = np.sqrt(_dot(one, one)), np.sqrt(_dot(two, two))  # their product alone may exceed single precision
-        opens = _dot(one, two) > np.float32(cosine) * sizes[0] * sizes[1]
-        narrow = np.float32(NARROW * np.abs(local).max(initial=0)) * np.sqrt(_dot(diagonal, diagonal))
-        return np.array(~(opens & (sizes[0] > narrow) & (sizes[1] > narrow)), np.bool_)
-
-    def _normals(self, columns: Singles) -> tuple[list[Singles], list[Singles], list[Singles]]:
-        """Normals of both halves, and the first diagonal, as columns."""
-        start, *others = ([axis[corner] for axis in columns] for corner in self.corners)
-        side, diagonal, last = ([x - y for x, y in zip(each, start, strict=True)] for each in others)
-        return _cross(side, diagonal), _cross(diagonal, last), diagonal
-
-
-def _dot(a: list[Singles], b: list[Singles]) -> Singles:
-    dots: Singles = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    return dots
-
-
-def _cross(a: list[Singles], b: list[Singles]) -> list[Singles]:
-    return [a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)]
