@@ -73,6 +73,7 @@ class BvhSource final : public CandidateSource {
       refitted_ = collected_ = true;
       return;
     }
+    look_which_are_spoiled(step.start, change, execution);
     vertices_.update(step, swept_, change, execution);
     edges_.update(step, swept_, change, execution);
     faces_.update(step, swept_, change, execution);
@@ -116,6 +117,17 @@ class BvhSource final : public CandidateSource {
 
  private:
   static constexpr std::size_t batch_size = 4096;
+
+  void look_which_are_spoiled(const PositionsView& start, SweptVertices::Change change, const Execution& execution) {
+    execution.for_chunks(3, 1, [&](Index, Index, Index tree) {
+      if (tree == 0)
+        edges_.look_whether_spoiled(start, change);
+      else if (tree == 1)
+        faces_.look_whether_spoiled(start, change);
+      else
+        vertices_.look_whether_spoiled(start, change);
+    });
+  }
 
   /// Tasks of one kind and their results.
   struct Pairs {
