@@ -23,7 +23,7 @@ struct LatticeProduct {
   std::ptrdiff_t row, layer;  ///< numbers from a point to the next along v, and along w
   const double* offset;       ///< (n, 3) added to the sums; null: nothing
   const Index* vertices;      ///< of the sums; null: all
-  const Index* places;        ///< rows of the sums; null: one after the other
+  const Index* places;        ///< rows of the sums; null: in order
   double* sums;               ///< (n, 3)
 };
 

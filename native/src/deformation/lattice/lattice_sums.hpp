@@ -14,7 +14,7 @@ namespace stiv {
 struct LatticeRows {
   const Positions* offset = nullptr;  ///< (n, 3) added to W p; null: nothing
   std::span<const Index> vertices{};  ///< empty: all
-  std::span<const Index> places{};    ///< of the rows in the result; empty: one after the other
+  std::span<const Index> places{};    ///< of the rows in the result; empty: in order
 };
 
 /// The weights of a lattice's points, factored into four weights along each axis: twelve numbers for each vertex
