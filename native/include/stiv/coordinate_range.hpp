@@ -26,6 +26,9 @@ inline const char* coordinate_fault(double x) {
 }
 
 /// Sets computed coordinates below the range to 0. Weights of distant controls cause them.
-inline void flush_below_range(Eigen::Ref<Positions> q) { q = (q.array().abs() < least_coordinate).select(0.0, q); }
+inline void flush_below_range(PositionRows q) {
+  double* const numbers = q.data();
+  for (Eigen::Index k = 0; k < q.size(); ++k) numbers[k] = std::abs(numbers[k]) < least_coordinate ? 0.0 : numbers[k];
+}
 
 }  // namespace stiv

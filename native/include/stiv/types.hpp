@@ -24,6 +24,8 @@ using Positions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 /// A view of positions in memory of Eigen or NumPy with contiguous rows. Other layouts and expressions are copied when
 /// the view is made.
 using PositionsView = Eigen::Ref<const Positions, 0, Eigen::OuterStride<3>>;
+/// Contiguous rows of positions to be written.
+using PositionRows = Eigen::Ref<Positions, 0, Eigen::OuterStride<3>>;
 
 /// The controls p of a deformation, (m, 3). The deformation defines the meaning of a row: a cage vertex, a lattice
 /// point, or for a rigid motion two rows, center and rotation vector.

@@ -39,6 +39,18 @@ Places vertex_places(const std::vector<DeformationComponent>& components, Index 
   return places;
 }
 
+/// Rows [begin, end) that are in no component.
+std::vector<std::pair<Index, Index>> runs_without_component(const Places& places) {
+  std::vector<std::pair<Index, Index>> runs;
+  for (std::size_t row = 0; row < places.component.size(); ++row) {
+    if (places.component[row] >= 0) continue;
+    const auto begin = static_cast<Index>(row);
+    if (runs.empty() || runs.back().second != begin) runs.emplace_back(begin, begin);
+    ++runs.back().second;
+  }
+  return runs;
+}
+
 /// The first control of each component, followed by the number of all controls.
 std::vector<Index> control_starts(const std::vector<DeformationComponent>& components) {
   std::vector<Index> starts{0};
@@ -152,6 +164,7 @@ class Concatenation final : public Deformation {
       : components_(std::move(components)),
         start_(std::move(start)),
         vertex_places_(vertex_places(components_, static_cast<Index>(start_.rows()))),
+        resting_(runs_without_component(vertex_places_)),
         control_starts_(control_starts(components_)),
         control_places_(control_places(control_starts_)) {}
 
@@ -160,10 +173,11 @@ class Concatenation final : public Deformation {
 
   Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count());
-    Positions q = start_;
+    Positions q(start_.rows(), 3);
+    for (const auto& [begin, end] : resting_) q.middleRows(begin, end - begin) = start_.middleRows(begin, end - begin);
     for (std::size_t component = 0; component < components_.size(); ++component)
-      place(components_[component].deformation->surface(rows_of_component(p, control_starts_, component), execution),
-            component, q, execution);
+      components_[component].deformation->put_surface(rows_of_component(p, control_starts_, component),
+                                                      components_[component].vertices, q, execution);
     return q;
   }
 
@@ -185,6 +199,10 @@ class Concatenation final : public Deformation {
                  components_[component].deformation->surface_rows(rows_of_component(p, control_starts_, component),
                                                                   rows[component], execution));
     return q;
+  }
+
+  bool has_exact_rows() const override {
+    return std::ranges::all_of(components_, [](const auto& each) { return each.deformation->has_exact_rows(); });
   }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
@@ -291,6 +309,7 @@ class Concatenation final : public Deformation {
   std::vector<DeformationComponent> components_;
   Positions start_;
   Places vertex_places_;
+  std::vector<std::pair<Index, Index>> resting_;  ///< [begin, end) of vertices in no component
   std::vector<Index> control_starts_;
   Places control_places_;
 };

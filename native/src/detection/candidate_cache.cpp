@@ -49,7 +49,7 @@ Events CandidateCache::find(const PlaceVertices& place, Proximity proximity, Exe
   add_last_search(execution);
   if (vertices_.empty()) return {};
   const FloatingPointScope floating_point;
-  take_rows(place(vertices_));
+  take_rows(place(vertices_), execution);
   return search_.find_among(pairs_, steps_, proximity, execution);
 }
 
@@ -106,15 +106,18 @@ void CandidateCache::replace(ClosePairs pairs) {
     if (listed[vertex] != 0) vertices_.push_back(vertex);
 }
 
-void CandidateCache::take_rows(const Rows& rows) {
-  for (const Positions* positions : {&rows.start, &rows.end}) {
-    if (positions->rows() != static_cast<Index>(vertices_.size()))
-      throw InputError("the cached candidates have " + std::to_string(vertices_.size()) + " vertices, not " +
+void CandidateCache::take_rows(const Rows& rows, const Execution& execution) {
+  constexpr Index rows_per_chunk = 1024;
+  const auto count = static_cast<Index>(vertices_.size());
+  for (const Positions* positions : {&rows.start, &rows.end})
+    if (positions->rows() != count)
+      throw InputError("the cached candidates have " + std::to_string(count) + " vertices, not " +
                        std::to_string(positions->rows()));
-    for (Index row = 0; row < positions->rows(); ++row)
-      search_.surface().check_position(vertices_[row], positions->row(row));
-  }
-  steps_.update_rows(rows.start, rows.end, vertices_, search_.surface().vertex_count());
+  execution.for_chunks(count, rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (const Positions* positions : {&rows.start, &rows.end})
+      for (Index row = begin; row < end; ++row) search_.surface().check_position(vertices_[row], positions->row(row));
+  });
+  steps_.update_rows(rows.start, rows.end, vertices_, search_.surface().vertex_count(), execution);
 }
 
 }  // namespace stiv

@@ -54,7 +54,7 @@ class CandidateCache {
  private:
   void add_last_search(const Execution& execution);
   void replace(ClosePairs pairs);
-  void take_rows(const Rows& rows);
+  void take_rows(const Rows& rows, const Execution& execution);
 
   PairSearch& search_;
   ClosePairs pairs_;

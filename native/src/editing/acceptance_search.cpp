@@ -13,7 +13,6 @@ constexpr double before_contact = 0.9;
 
 /// Nothing if the deformation has no surface there.
 std::optional<State> state_at_fraction(const EditCall& call, const State& candidate, double fraction) {
-  if (fraction == 1) return candidate;
   const Controls controls = call.context.stored(
       interpolate(call.accepted.controls, candidate.controls, fraction, call.context.rotation_rows()));
   return feasible_state(call.context, controls, call.execution);
@@ -21,14 +20,16 @@ std::optional<State> state_at_fraction(const EditCall& call, const State& candid
 
 }  // namespace
 
-Acceptance accept_largest_fraction(EditCall& call, const RoundOutcome& outcome, const StatePredicate& is_agreeable) {
+Acceptance accept_largest_fraction(EditCall& call, RoundOutcome& outcome, const StatePredicate& is_agreeable) {
   const Positions& from = call.accepted.surface;
   Acceptance acceptance;
   double fraction = call.context.limits().fraction_of_longest_step(call.accepted.controls, outcome.candidate.controls);
   acceptance.is_part = fraction < 1;
   for (int attempt = 0; attempt < max_attempts; ++attempt) {
     call.execution.check();
-    std::optional<State> found = state_at_fraction(call, outcome.candidate, fraction);
+    std::optional<State> part;
+    if (fraction < 1) part = state_at_fraction(call, outcome.candidate, fraction);
+    State* const found = fraction == 1 ? &outcome.candidate : part ? &*part : nullptr;
     if (found && found->controls == call.accepted.controls) break;
     const bool settled = fraction == 1 && outcome.clear;
     if (!found || !is_agreeable(*found)) {

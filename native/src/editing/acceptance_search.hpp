@@ -16,6 +16,7 @@ struct Acceptance {
 /// continuous test of the path, the exact static test, and `is_agreeable`: s = 1, then 0.9 times the time of the first
 /// contact, or half. If the step exceeds the longest step of a scalar, the search starts with the fraction that does
 /// not. A candidate that settled and is not agreeable ends the search. (mathematics.md, "The loop")
-Acceptance accept_largest_fraction(EditCall& call, const RoundOutcome& outcome, const StatePredicate& is_agreeable);
+/// An accepted candidate is moved from the outcome.
+Acceptance accept_largest_fraction(EditCall& call, RoundOutcome& outcome, const StatePredicate& is_agreeable);
 
 }  // namespace stiv

@@ -118,13 +118,19 @@ std::optional<Events> CollisionQueries::find(const Positions& from, const Positi
                            context_.centred(to, centred_end_, execution), context_.round_proximity(), limit, execution);
 }
 
-/// Rows of a surface and of the obstacles after it.
-Positions CollisionQueries::rows_with_obstacles(const Positions& q, std::span<const Index> vertices) const {
+/// Rows of a surface and of the obstacles after it, relative to the center.
+Positions CollisionQueries::centred_rows(const Positions& q, std::span<const Index> vertices,
+                                         const Execution& execution) const {
+  constexpr Index rows_per_chunk = 1024;
   const Index own = static_cast<Index>(q.rows());
   Positions some(static_cast<Index>(vertices.size()), 3);
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    some.row(static_cast<Index>(k)) =
-        vertices[k] < own ? q.row(vertices[k]) : context_.obstacles().row(vertices[k] - own);
+  execution.for_chunks(static_cast<Index>(some.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) {
+      const Index vertex = vertices[at(k)];
+      some.row(k) = vertex < own ? q.row(vertex) : context_.obstacles().row(vertex - own);
+    }
+    context_.centre(some.middleRows(begin, end - begin));
+  });
   return some;
 }
 
@@ -136,18 +142,20 @@ std::vector<unsigned char> CollisionQueries::moved(const PositionsView& from, co
   return moved;
 }
 
-Events CollisionQueries::find_cached(const Positions& from, State& to, Execution& execution) {
+void CollisionQueries::place_rows(std::span<const Index> vertices, State& state, const Execution& execution) const {
+  Positions some = context_.deformation().surface_rows(state.controls, vertices, execution);
+  flush_below_range(some);
+  put_rows(state.surface, vertices, some);
+}
+
+Events CollisionQueries::find_cached(const Positions& from, State& to, CandidateRows rows, Execution& execution) {
   if (guard_->round_detector) return {};
   guard_pairs_apart_at(from, execution);
   double placing = 0;
   const auto place = [&](std::span<const Index> vertices) {
     const ScopedTimer timer(placing);
-    const std::span<const Index> own = before_obstacles(vertices, from);
-    Positions end = context_.deformation().surface_rows(to.controls, own, execution);
-    flush_below_range(end);
-    put_rows(to.surface, own, end);
-    return CandidateCache::Rows{context_.centred(rows_with_obstacles(from, vertices)),
-                                context_.centred(rows_with_obstacles(to.surface, vertices))};
+    if (rows == CandidateRows::to_be_placed) place_rows(before_obstacles(vertices, from), to, execution);
+    return CandidateCache::Rows{centred_rows(from, vertices, execution), centred_rows(to.surface, vertices, execution)};
   };
   Events events;
   {

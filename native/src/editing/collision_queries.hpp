@@ -17,6 +17,9 @@
 
 namespace stiv {
 
+/// Whether a candidate has the rows of its surface that a query reads.
+enum class CandidateRows { placed, to_be_placed };
+
 /// The collision tests of a session: continuous detection, with its cached candidates, and the exact static test.
 /// Excluded pairs are left out. Caches speed up queries, and decide which events the rounds find first. Positions are
 /// given without those of obstacles.
@@ -34,8 +37,9 @@ class CollisionQueries {
 
   /// Events of a step, with the proximity of the rounds; nothing if the step exceeds the pair limit.
   std::optional<Events> find(const Positions& from, const Positions& to, PairLimit limit, Execution& execution);
-  /// Events among the cached candidates. Updates `to.surface` at the vertices of these candidates only.
-  Events find_cached(const Positions& from, State& to, Execution& execution);
+  /// Events among the cached candidates. `to.surface` needs to be that of `to.controls` at their vertices only, where
+  /// it is placed unless it is already.
+  Events find_cached(const Positions& from, State& to, CandidateRows rows, Execution& execution);
   /// Prunes cached candidates that the step does not bring close. Called when rounds toward another goal begin.
   void prune_cache(const Positions& from, const Positions& to, Execution& execution);
   void clear_cache() { guard_->cache.clear(); }
@@ -83,7 +87,8 @@ class CollisionQueries {
   std::optional<Events> find_not_excluded(Detector& detector, const Positions& from, const Positions& to,
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;
 
-  Positions rows_with_obstacles(const Positions& q, std::span<const Index> vertices) const;
+  void place_rows(std::span<const Index> vertices, State& state, const Execution& execution) const;
+  Positions centred_rows(const Positions& q, std::span<const Index> vertices, const Execution& execution) const;
   std::vector<unsigned char> moved(const PositionsView& from, const PositionsView& to,
                                    const Execution& execution) const;
 

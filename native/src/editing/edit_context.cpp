@@ -70,7 +70,8 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obsta
   const Positions q = deformation_->surface_in_range(start, execution);
   check_positions(q);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
-  centred_obstacles_ = centred(obstacles_);
+  centred_obstacles_ = obstacles_;
+  centre(centred_obstacles_);
   SceneRows rows(centred_obstacles_);
   centred(q, rows, execution);
   reference_ = std::move(rows.with_room_for(static_cast<Index>(q.rows())));
@@ -151,18 +152,17 @@ Positions EditContext::surface_at(const Controls& controls, Execution& execution
   return deformation_->surface_in_range(controls, execution);
 }
 
-Positions EditContext::centred(const PositionsView& q) const {
-  Positions about_centre = q.rowwise() - centre_;
-  flush_below_range(about_centre);
-  return about_centre;
+void EditContext::centre(PositionRows q) const {
+  q.rowwise() -= centre_;
+  flush_below_range(q);
 }
 
 const Positions& EditContext::centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const {
-  constexpr Index rows_per_chunk = 8192;
+  constexpr Index rows_per_chunk = 2048;
   Positions& about_centre = rows.with_room_for(static_cast<Index>(q.rows()));
   execution.for_chunks(static_cast<Index>(q.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
-    about_centre.middleRows(begin, end - begin) = q.middleRows(begin, end - begin).rowwise() - centre_;
-    flush_below_range(about_centre.middleRows(begin, end - begin));
+    about_centre.middleRows(begin, end - begin) = q.middleRows(begin, end - begin);
+    centre(about_centre.middleRows(begin, end - begin));
   });
   return about_centre;
 }

@@ -88,7 +88,7 @@ class EditContext {
   /// @throws InfeasibleError
   Positions surface_at(const Controls& controls, Execution& execution) const;
   /// Relative to the center of the start without the obstacles: smaller coordinates round less.
-  Positions centred(const PositionsView& q) const;
+  void centre(PositionRows q) const;
   /// The same for a surface, with the obstacles.
   const Positions& centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const;
   /// @throws InputError if a surface, without the obstacles, has another shape or coordinates out of range

@@ -2,6 +2,7 @@
 #include "editing/moving_part.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "editing/scene_rows.hpp"
@@ -49,7 +50,7 @@ double MovingPart::energy(const Positions& a, const Positions& b) const {
 double MovingPart::longest_displacement(const Positions& from, const Positions& to) const {
   if (rows_.count() == 0) return 0;
   const auto step = to.middleRows(rows_.first, rows_.count()) - from.middleRows(rows_.first, rows_.count());
-  return step.rowwise().norm().maxCoeff();
+  return std::sqrt(step.rowwise().squaredNorm().maxCoeff());
 }
 
 const Eigen::VectorXd& MovingPart::region_areas(const Positions& q, const Execution& execution) const {

@@ -63,7 +63,7 @@ RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection
       is_diverging_(is_diverging),
       progress_(progress_toward(call, goal, projection)) {
   outcome_.pair_limit = pair_limit;
-  outcome_.candidate.surface = call.accepted.surface;
+  if (progress_.cache_is_pruned) outcome_.candidate.surface = call.accepted.surface;  // else it is placed as a whole
 }
 
 RoundOutcome RoundLoop::run() {
@@ -170,19 +170,21 @@ auto RoundLoop::at_feasible_candidate(const Evaluate& evaluate) {
 /// step exceeds the pair limit.
 std::optional<Events> RoundLoop::find_events() {
   const Positions& start = call_.accepted.surface;
+  const bool prunes = !progress_.cache_is_pruned, reads_rows = prunes && call_.context.deformation().has_exact_rows();
   std::optional<Positions> placed;
-  if (!progress_.cache_is_pruned) {
+  if (prunes) {
     place_surface();
-    placed = outcome_.candidate.surface;
-    call_.queries.prune_cache(start, *placed, call_.execution);
+    call_.queries.prune_cache(start, outcome_.candidate.surface, call_.execution);
     progress_.cache_is_pruned = true;
+    if (!reads_rows) placed = outcome_.candidate.surface;
   }
-  Events cached =
-      at_feasible_candidate([&] { return call_.queries.find_cached(start, outcome_.candidate, call_.execution); });
+  const CandidateRows rows = reads_rows ? CandidateRows::placed : CandidateRows::to_be_placed;
+  Events cached = at_feasible_candidate(
+      [&] { return call_.queries.find_cached(start, outcome_.candidate, rows, call_.execution); });
   if (!cached.empty()) return cached;
   if (placed)
     outcome_.candidate.surface = std::move(*placed);
-  else
+  else if (!reads_rows)
     place_surface();
   if (std::optional<Events> near = find_near_events()) return near;
   return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);

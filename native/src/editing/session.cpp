@@ -296,7 +296,7 @@ class SurfaceSession final : public SessionImplementation {
       tightening_.reset();
     }
     EditReport report;
-    State target{goal, accepted_.surface};
+    State target{goal, {}};
     EditStatus status = EditStatus::unchanged;
     {
       const ScopedTimer timer(execution.timings.total);
@@ -323,6 +323,7 @@ class SurfaceSession final : public SessionImplementation {
       transaction.commit();
       return status_of(context_, transaction.controls_before(), accepted_.controls, goal, call.report);
     } catch (const Interrupted&) {
+      if (target.surface.rows() != accepted_.surface.rows()) target.surface = accepted_.surface;  // not yet known
       if (call.execution.cancel_requested()) {
         call.report.path.clear();
         return EditStatus::cancelled;

@@ -59,7 +59,7 @@ class SubEditLoop {
   RoundOutcome better_of(RoundOutcome accumulated, RoundOutcome other);
   std::optional<RoundOutcome> answer_in_better_way();
   bool diverges(const State& state) const;
-  Acceptance accept(const RoundOutcome& outcome, bool is_first);
+  Acceptance accept(RoundOutcome& outcome, bool is_first);
   void report(RoundOutcome& outcome, const Acceptance& acceptance);
 
   EditCall& call_;
@@ -129,7 +129,7 @@ bool SubEditLoop::diverges(const State& state) const {
 
 /// Accepts a fraction of the step to the outcome. If no fraction of the first step is accepted, tries the straight step
 /// to the goal.
-Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
+Acceptance SubEditLoop::accept(RoundOutcome& outcome, bool is_first) {
   // A first solution that settled is accepted even if the energy grows: a pinned object may push a larger one aside.
   const bool may_raise_energy = is_first && outcome.clear && !aim_.must_improve;
   const auto is_agreeable = [&](const State& state) {
@@ -138,7 +138,8 @@ Acceptance SubEditLoop::accept(const RoundOutcome& outcome, bool is_first) {
   Acceptance acceptance = accept_largest_fraction(call_, outcome, is_agreeable);
   const bool cannot_improve = outcome.clear && aim_.must_improve;
   if (acceptance.fraction > 0 || !is_first || cannot_improve) return acceptance;
-  acceptance = accept_largest_fraction(call_, goal_as_outcome(call_, aim_, outcome.pair_limit), is_agreeable);
+  RoundOutcome goal = goal_as_outcome(call_, aim_, outcome.pair_limit);
+  acceptance = accept_largest_fraction(call_, goal, is_agreeable);
   acceptance.truncated = true;
   return acceptance;
 }

@@ -42,6 +42,9 @@ TEST_CASE("concatenation: vertices of components move and the others stay") {
   CHECK(q.row(6) == p.row(4));
   CHECK(q.row(4) == p.row(5));
   CHECK((q.row(2) - 0.2 * p.row(2) - 0.8 * p.row(3)).norm() < 1e-15);
+  const std::vector<Index> some{11, 0, 6, 3};
+  CHECK(whole->has_exact_rows());
+  CHECK(whole->surface_rows(p, some, Execution(1)) == Positions(q(some, Eigen::all)));
   CHECK(whole->support(0) == std::vector<Index>{1, 3, 7, 9});
   CHECK(whole->support(4) == std::vector<Index>{6});
 }

@@ -42,10 +42,17 @@ class Deformation {
   /// f(p) as detection and acceptance read it: coordinates below the valid range (coordinate_range.hpp) are 0.
   Positions surface_in_range(const Controls& p, const Execution& execution = Execution(1)) const;
 
+  /// Writes f(p), bit for bit as surface(), into the given rows of q, one for each vertex; empty: the first n.
+  virtual void put_surface(const Controls& p, std::span<const Index> rows, Positions& q,
+                           const Execution& execution) const;
+
   /// f(p) at the given vertices, (k, 3), bit for bit as surface(). The base class evaluates the whole surface.
   /// As-rigid-as-possible deformations return an approximation: rounds search these rows for contacts, but the last
   /// round and acceptance evaluate the whole surface.
   virtual Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
+
+  /// Whether surface_rows() has the bits of surface().
+  virtual bool has_exact_rows() const { return true; }
 
   /// J(p)' g: pulls a sparse covector over vertices back to controls.
   virtual SparseField pull_back(const ControlsView& p, const SparseField& g) const = 0;

@@ -82,6 +82,8 @@ class Arap final : public HandleDeformation {
     return positions(minimum(p, true)->descent.shape, p);
   }
 
+  bool has_exact_rows() const override { return false; }
+
   Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution&) const override {
     check_control_rows(p, control_count());
     return rows_of(positions(minimum(p, false)->rough, p), vertices);

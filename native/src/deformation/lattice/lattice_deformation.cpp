@@ -3,7 +3,6 @@
 
 #include "deformation/checks.hpp"
 #include "deformation/lattice/lattice_sums.hpp"
-#include "position_rows.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -20,16 +19,23 @@ class Lattice final : public LinearDeformation {
   Index vertex_count() const override { return linear_->vertex_count(); }
 
   Positions surface(const Controls& p, const Execution& execution) const override {
-    check_control_rows(p, control_count());
-    Positions q = sums_.sum(p, execution);
-    q += offset();
+    Positions q(vertex_count(), 3);
+    put_surface(p, {}, q, execution);
     return q;
+  }
+
+  void put_surface(const Controls& p, std::span<const Index> rows, Positions& q,
+                   const Execution& execution) const override {
+    check_control_rows(p, control_count());
+    sums_.put(p, {.offset = &offset(), .places = rows}, q, execution);
   }
 
   Positions surface_rows(const Controls& p, std::span<const Index> vertices,
                          const Execution& execution) const override {
     check_control_rows(p, control_count());
-    return sums_.sum(p, vertices, execution) + rows_of(offset(), vertices);
+    Positions q(static_cast<Index>(vertices.size()), 3);
+    if (!vertices.empty()) sums_.put(p, {.offset = &offset(), .vertices = vertices}, q, execution);
+    return q;
   }
 
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override { return linear_->pull_back(p, g); }

@@ -15,13 +15,15 @@
 
 namespace stiv {
 
-/// Input and output of the sums. Points are x, y, z, 0.
+/// Input and output of the sums. Points are x, y, z; some numbers follow the last one.
 struct LatticeProduct {
   const Index* starts;
   const double* weights;
   const double* points;
   std::ptrdiff_t row, layer;  ///< numbers from a point to the next along v, and along w
+  const double* offset;       ///< (n, 3) added to the sums; null: nothing
   const Index* vertices;      ///< of the sums; null: all
+  const Index* places;        ///< rows of the sums; null: in order
   double* sums;               ///< (n, 3)
 };
 
@@ -32,9 +34,9 @@ struct LatticeProduct {
 HWY_BEFORE_NAMESPACE();
 namespace stiv::HWY_NAMESPACE {
 
-constexpr std::size_t four_points = 16;  // numbers of the four that follow each other along u
+constexpr std::size_t four_points = 12;  // numbers of the four that follow each other along u
 constexpr std::size_t lane_count = hn::MaxLanes(Doubles());
-constexpr std::size_t vectors = four_points / lane_count < 4 ? four_points / lane_count : 4;
+constexpr std::size_t vectors = lane_count == 1 ? 4 : lane_count == 8 ? 2 : 3;  // few enough for the registers
 
 /// Sums along v and w of some of the numbers of four points.
 HWY_INLINE void add_rows(const LatticeProduct& p, const double* first, const double* weights, double* sums) {
@@ -42,10 +44,12 @@ HWY_INLINE void add_rows(const LatticeProduct& p, const double* first, const dou
   Lanes whole[vectors];
   for (std::size_t k = 0; k < vectors; ++k) whole[k] = hn::Zero(d);
   for (std::size_t c = 0; c < 4; ++c) {
-    Lanes layer[vectors];
-    for (std::size_t k = 0; k < vectors; ++k) layer[k] = hn::Zero(d);
     const double* row = first + static_cast<std::ptrdiff_t>(c) * p.layer;
-    for (std::size_t b = 0; b < 4; ++b, row += p.row) {
+    Lanes layer[vectors];
+    for (std::size_t k = 0; k < vectors; ++k)
+      layer[k] = hn::Mul(hn::Set(d, weights[4]), hn::LoadU(d, row + k * lane_count));
+    for (std::size_t b = 1; b < 4; ++b) {
+      row += p.row;
       const Lanes along_v = hn::Set(d, weights[4 + b]);
       for (std::size_t k = 0; k < vectors; ++k)
         layer[k] = hn::Add(layer[k], hn::Mul(along_v, hn::LoadU(d, row + k * lane_count)));
@@ -57,16 +61,20 @@ HWY_INLINE void add_rows(const LatticeProduct& p, const double* first, const dou
 }
 
 void add_points(const LatticeProduct& p, Index begin, Index end) {
-  for (Index place = begin; place < end; ++place) {
-    const Index vertex = p.vertices == nullptr ? place : p.vertices[place];
-    const double* const first = p.points + 4 * static_cast<std::ptrdiff_t>(p.starts[vertex]);
+  for (Index k = begin; k < end; ++k) {
+    const Index vertex = p.vertices == nullptr ? k : p.vertices[k];
+    const double* const first = p.points + 3 * static_cast<std::ptrdiff_t>(p.starts[vertex]);
     const double* const weights = p.weights + 12 * static_cast<std::ptrdiff_t>(vertex);
-    double values[four_points];
-    for (std::size_t k = 0; k < four_points; k += vectors * lane_count) add_rows(p, first + k, weights, values + k);
-    double* const sum = p.sums + 3 * static_cast<std::ptrdiff_t>(place);
+    double values[four_points + lane_count];
+    for (std::size_t done = 0; done < four_points; done += vectors * lane_count)
+      add_rows(p, first + done, weights, values + done);
+    double* const sum = p.sums + 3 * static_cast<std::ptrdiff_t>(p.places == nullptr ? k : p.places[k]);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      sum[axis] = (weights[0] * values[axis] + weights[1] * values[4 + axis]) +
-                  (weights[2] * values[8 + axis] + weights[3] * values[12 + axis]);
+      sum[axis] = (weights[0] * values[axis] + weights[1] * values[3 + axis]) +
+                  (weights[2] * values[6 + axis] + weights[3] * values[9 + axis]);
+    if (p.offset == nullptr) continue;
+    const double* const offset = p.offset + 3 * static_cast<std::ptrdiff_t>(vertex);
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += offset[axis];
   }
 }
 
@@ -104,26 +112,32 @@ LatticeSums::LatticeSums(const std::array<LatticeAxis, 3>& axes, const Positions
 }
 
 Positions LatticeSums::sum(const Controls& p, const Execution& execution) const {
-  return sum(p, nullptr, static_cast<Index>(starts_.size()), execution);
+  Positions sums(vertex_count(), 3);
+  put(p, {}, sums, execution);
+  return sums;
 }
 
-Positions LatticeSums::sum(const Controls& p, std::span<const Index> vertices, const Execution& execution) const {
-  return sum(p, vertices.data(), static_cast<Index>(vertices.size()), execution);
-}
-
-/// Sums at `count` vertices: those of `vertices`, or all if it is null.
-Positions LatticeSums::sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const {
-  constexpr Index rows_per_chunk = 2048;
-  Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> points(static_cast<Index>(points_.size()), 4);
-  for (Index place = 0; place < points.rows(); ++place) points.row(place) << p.row(points_[at(place)]), 0;
-  Positions sums(count, 3);
-  const std::ptrdiff_t row = 4 * axes_[0].count;
-  const LatticeProduct product{starts_.data(),       weights_.data(), points.data(), row,
-                               row * axes_[1].count, vertices,        sums.data()};
+void LatticeSums::put(const Controls& p, const LatticeRows& rows, Positions& sums, const Execution& execution) const {
+  constexpr Index rows_per_chunk = 512;
+  constexpr std::size_t read_beyond = 4;  // numbers, by vectors of eight
+  std::vector<double> points(3 * points_.size() + read_beyond, 0);
+  for (std::size_t place = 0; place < points_.size(); ++place)
+    for (std::size_t axis = 0; axis < 3; ++axis) points[3 * place + axis] = p(points_[place], static_cast<Index>(axis));
+  const auto numbers = [](std::span<const Index> some) { return some.empty() ? nullptr : some.data(); };
+  const std::ptrdiff_t row = 3 * static_cast<std::ptrdiff_t>(axes_[0].count);
+  const LatticeProduct product{starts_.data(),
+                               weights_.data(),
+                               points.data(),
+                               row,
+                               row * axes_[1].count,
+                               rows.offset == nullptr ? nullptr : rows.offset->data(),
+                               numbers(rows.vertices),
+                               numbers(rows.places),
+                               sums.data()};
+  const Index count = rows.vertices.empty() ? vertex_count() : static_cast<Index>(rows.vertices.size());
   execution.for_chunks(count, rows_per_chunk, [&](Index begin, Index end, Index) {
     STIV_FOR_VECTOR_TARGET(add_points)(product, begin, end);
   });
-  return sums;
 }
 
 }  // namespace stiv

@@ -10,6 +10,13 @@
 
 namespace stiv {
 
+/// Which rows of W p to compute, and where they go.
+struct LatticeRows {
+  const Positions* offset = nullptr;  ///< (n, 3) added to W p; null: nothing
+  std::span<const Index> vertices{};  ///< empty: all
+  std::span<const Index> places{};    ///< of the rows in the result; empty: in order
+};
+
 /// The weights of a lattice's points, factored into four weights along each axis: twelve numbers for each vertex
 /// instead of 64 with indices, which do not fit into the processor's cache.
 class LatticeSums {
@@ -20,15 +27,15 @@ class LatticeSums {
 
   /// W p, (n, 3), summed along w, then v, then u, none fused: same bits for any vector width and number of threads.
   Positions sum(const Controls& p, const Execution& execution) const;
-  /// The given rows of W p, (k, 3).
-  Positions sum(const Controls& p, std::span<const Index> vertices, const Execution& execution) const;
+  /// Writes rows of W p, with the same bits.
+  void put(const Controls& p, const LatticeRows& rows, Positions& sums, const Execution& execution) const;
 
  private:
   struct Axis {
     Index first = 0, count = 0;  ///< places along an axis in use, beyond the ends included
   };
 
-  Positions sum(const Controls& p, const Index* vertices, Index count, const Execution& execution) const;
+  Index vertex_count() const { return static_cast<Index>(starts_.size()); }
 
   std::array<Axis, 3> axes_;
   std::vector<Index> points_;    ///< point at each place, u fastest

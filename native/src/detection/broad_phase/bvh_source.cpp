@@ -117,6 +117,7 @@ class BvhSource final : public CandidateSource {
     SweptVertices::Change change = swept_.update(step, execution, reuse);
     if (!refitted) change = SweptVertices::Change::all;
     if (change != SweptVertices::Change::none) {
+      look_which_are_spoiled(step.start, change, execution);
       vertices_.update(step, swept_, change, execution);
       edges_.update(step, swept_, change, execution);
       faces_.update(step, swept_, change, execution);
@@ -124,6 +125,17 @@ class BvhSource final : public CandidateSource {
     }
     refitted_ = true;
     return change;
+  }
+
+  void look_which_are_spoiled(const PositionsView& start, SweptVertices::Change change, const Execution& execution) {
+    execution.for_chunks(3, 1, [&](Index, Index, Index tree) {
+      if (tree == 0)
+        edges_.look_whether_spoiled(start, change);
+      else if (tree == 1)
+        faces_.look_whether_spoiled(start, change);
+      else
+        vertices_.look_whether_spoiled(start, change);
+    });
   }
 
   /// Tasks of one kind and their results.

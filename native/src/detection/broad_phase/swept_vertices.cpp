@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "detection/broad_phase/common_boxes.hpp"
 #include "detection/primitive_pair.hpp"
 #include "stiv/coordinate_range.hpp"
 
@@ -14,7 +15,7 @@ namespace stiv {
 
 namespace {
 
-constexpr Index chunk_size = 4096;
+constexpr Index chunk_size = 2048;
 
 const double* row(const PositionsView& positions, Index vertex) {
   return positions.data() + 3 * static_cast<std::ptrdiff_t>(vertex);
@@ -193,21 +194,39 @@ bool SweptVertices::near_segment(const Step& step, Index vertex, const Vector3& 
   return aside + 0x1p-49 * size <= 0.999 * slack * motion.lpNorm<Eigen::Infinity>();  // all rounding allowed for
 }
 
+/// Boxes and coarse steps in the common frame, of the steps taken last. Returns the largest reach of coarse steps.
+std::int32_t SweptVertices::make_boxes(std::span<const Index> vertices) {
+  const Vector3 &centre = frame_.centre, &motion = frame_.motion, end = centre + motion;
+  const CommonFrame frame{{centre[0], centre[1], centre[2], 0},
+                          {motion[0], motion[1], motion[2], 0},
+                          {end[0], end[1], end[2], 0},
+                          frame_.margin(),
+                          slack,
+                          coarse_frame_.in_units(1)};
+  return make_common_boxes(frame, steps_.data(), vertices, boxes_.data(), coarse_steps_.data());
+}
+
+/// The same in the frames of bodies.
+std::int32_t SweptVertices::make_framed_boxes(const Step& step, std::span<const Index> vertices) {
+  std::int32_t reach = 0;
+  for (const Index vertex : vertices) {
+    boxes_[vertex] = box(step, vertex);
+    coarse_steps_[vertex] = coarse_frame_.step(row(step.start, vertex), row(step.end, vertex));
+    reach = std::max(reach, coarse_steps_[vertex].reach());
+  }
+  return reach;
+}
+
 void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution) {
   const auto count = static_cast<Index>(vertices.size());
   std::vector<std::int32_t> reaches(Execution::chunk_count(count, chunk_size));
   execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
-    std::int32_t reach = 0;
-    for (Index k = begin; k < end; ++k) {
-      const Index vertex = vertices[k];
-      boxes_[vertex] = box(step, vertex);
-      const CoarseStep coarse = coarse_frame_.step(row(step.start, vertex), row(step.end, vertex));
-      reach = std::max(reach, coarse.reach());
-      coarse_steps_[vertex] = coarse;
+    const std::span<const Index> some(vertices.data() + begin, vertices.data() + end);
+    reaches[chunk] = motions_.has_own_frames() ? make_framed_boxes(step, some) : make_boxes(some);
+    for (const Index vertex : some) {
       start_.row(vertex) = step.start.row(vertex);
       end_.row(vertex) = step.end.row(vertex);
     }
-    reaches[chunk] = reach;
   });
   for (const std::int32_t reach : reaches) coarse_reach_ = std::max(coarse_reach_, reach);
 }

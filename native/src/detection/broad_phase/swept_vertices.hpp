@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "detection/broad_phase/bounds.hpp"
@@ -95,6 +96,8 @@ class SweptVertices {
   bool near_segment(const Step& step, Index vertex, const Vector3& frame_motion, const Vector3& step_motion) const;
   bool holds(const Step& step, const Execution& execution) const;
   bool stays_near(const Positions& surface, const Step& step, const Execution& execution) const;
+  std::int32_t make_boxes(std::span<const Index> vertices);
+  std::int32_t make_framed_boxes(const Step& step, std::span<const Index> vertices);
   void sweep(const Step& step, const std::vector<Index>& vertices, const Execution& execution);
 
   const Surface& surface_;

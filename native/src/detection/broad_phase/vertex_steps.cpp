@@ -5,7 +5,7 @@ namespace stiv {
 
 namespace {
 
-constexpr Index chunk_size = 8192;
+constexpr Index chunk_size = 2048;
 
 }  // namespace
 
@@ -34,9 +34,11 @@ void VertexSteps::update(const PositionsView& start, const PositionsView& end, c
 }
 
 void VertexSteps::update_rows(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
-                              Index vertex_count) {
+                              Index vertex_count, const Execution& execution) {
   rows_.resize(static_cast<std::size_t>(vertex_count));
-  for (std::size_t k = 0; k < vertices.size(); ++k) take(start, end, static_cast<Index>(k), vertices[k]);
+  execution.for_chunks(static_cast<Index>(vertices.size()), chunk_size, [&](Index first, Index last, Index) {
+    for (Index k = first; k < last; ++k) take(start, end, k, vertices[k]);
+  });
 }
 
 }  // namespace stiv

@@ -29,7 +29,7 @@ class VertexSteps {
 
   /// Updates some vertices from their rows, (k, 3) each.
   void update_rows(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
-                   Index vertex_count);
+                   Index vertex_count, const Execution& execution);
 
   const VertexStep* data() const { return rows_.data(); }
 

@@ -51,6 +51,25 @@ TEST_CASE("swept vertices: boxes change where the step does") {
   CHECK(update(swept, scene.start, end.array() + 1e3, 0.02) == Change::all);
 }
 
+TEST_CASE("swept vertices: vector code makes the boxes and coarse steps that bodies with the common frame have") {
+  const MovingScene scene = stirred_sheets(9, 3, 0.05, 4);
+  const Positions end = scene.end.rowwise() + Eigen::RowVector3d(3, -2, 1);
+  const Vector3 motion(2.9, -2.1, 1.2);
+  SweptVertices common(*scene.surface), framed(*scene.surface);
+  const std::vector<Vector3> motions(scene.surface->bodies().size(), motion);
+  common.update({scene.start, end, {0.01, 0.5}, {motion, {}}}, Execution(2));
+  framed.update({scene.start, end, {0.01, 0.5}, {motion, motions}}, Execution(2));
+  REQUIRE(framed.motions().has_own_frames());
+  CHECK(common.coarse_bounds().clearance == framed.coarse_bounds().clearance);
+  for (std::size_t vertex = 0; vertex < common.boxes().size(); ++vertex) {
+    CHECK(common.boxes()[vertex].values == framed.boxes()[vertex].values);
+    for (std::size_t k = 0; k < 4; ++k) {
+      CHECK(common.coarse_steps()[vertex].start[k] == framed.coarse_steps()[vertex].start[k]);
+      CHECK(common.coarse_steps()[vertex].end[k] == framed.coarse_steps()[vertex].end[k]);
+    }
+  }
+}
+
 TEST_CASE("swept vertices: a motion common to all leaves the boxes small, and less of it all holds") {
   const MovingScene scene = stirred_sheets(20, 2, 0.001, 2);
   const Eigen::RowVector3d carried(3, -2, 1);
