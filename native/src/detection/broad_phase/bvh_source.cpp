@@ -117,25 +117,27 @@ class BvhSource final : public CandidateSource {
     SweptVertices::Change change = swept_.update(step, execution, reuse);
     if (!refitted) change = SweptVertices::Change::all;
     if (change != SweptVertices::Change::none) {
-      look_which_are_spoiled(step.start, change, execution);
-      vertices_.update(step, swept_, change, execution);
-      edges_.update(step, swept_, change, execution);
-      faces_.update(step, swept_, change, execution);
+      const auto [edges, faces, vertices] = which_are_spoiled(step.start, change, execution);
+      vertices_.update(step, swept_, change, vertices, execution);
+      edges_.update(step, swept_, change, edges, execution);
+      faces_.update(step, swept_, change, faces, execution);
       vertices_.drop_curve();
     }
     refitted_ = true;
     return change;
   }
 
-  void look_which_are_spoiled(const PositionsView& start, SweptVertices::Change change, const Execution& execution) {
+  /// The trees of edges, faces and vertices that are to be built again, found at once.
+  std::array<bool, 3> which_are_spoiled(const PositionsView& start, SweptVertices::Change change,
+                                        const Execution& execution) const {
+    std::array<bool, 3> spoiled{};
+    if (change != SweptVertices::Change::all) return spoiled;
     execution.for_chunks(3, 1, [&](Index, Index, Index tree) {
-      if (tree == 0)
-        edges_.look_whether_spoiled(start, change);
-      else if (tree == 1)
-        faces_.look_whether_spoiled(start, change);
-      else
-        vertices_.look_whether_spoiled(start, change);
+      spoiled[at(tree)] = tree == 0   ? edges_.is_spoiled(start)
+                          : tree == 1 ? faces_.is_spoiled(start)
+                                      : vertices_.is_spoiled(start);
     });
+    return spoiled;
   }
 
   /// Tasks of one kind and their results.

@@ -25,17 +25,17 @@ class PrimitiveTree {
   PrimitiveTree(const Surface& surface, const Index* rows, Index count, const PrimitiveTree<1>* vertices = nullptr)
       : surface_(surface), rows_(rows), count_(count), vertices_(vertices) {}
 
-  /// Looks whether the next update is to build the tree again. Takes as long as a part of it, and needs no other tree.
-  void look_whether_spoiled(const PositionsView& start, SweptVertices::Change change) {
-    is_spoiled_ = tree_ && change == SweptVertices::Change::all && spread(start) > 2 * spread_;
-  }
+  /// Has the surface deformed so much that it pays off to build the tree again? Reads this tree alone.
+  bool is_spoiled(const PositionsView& start) const { return tree_ && spread(start) > 2 * spread_; }
 
   /// Brings the boxes up to date after `change` of the vertices' boxes.
-  void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, const Execution& execution) {
+  /// @param spoiled the tree is built again
+  void update(const Step& step, const SweptVertices& swept, SweptVertices::Change change, bool spoiled,
+              const Execution& execution) {
     // Needed only when few vertices move, never by a first search. Built by the second one at the latest, so that
     // memory does not grow late in a session.
     if (std::exchange(has_boxes_, true)) prepare_later_updates(swept.changing());
-    if (!tree_ || is_spoiled_) build(step.start, execution);
+    if (!tree_ || spoiled) build(step.start, execution);
     const bool many = swept.changed().size() > static_cast<std::size_t>(surface_.vertex_count()) / few;
     if (change == SweptVertices::Change::all) {
       tree_->refit_corners(swept.boxes(), execution);
@@ -173,8 +173,7 @@ class PrimitiveTree {
   Curve curve_;
   std::optional<Bvh> tree_;
   bool has_boxes_ = false;
-  bool is_spoiled_ = false;  // the surface has deformed so much that building the tree again pays off
-  double spread_ = 0;        // when the tree was built
+  double spread_ = 0;  // when the tree was built
 };
 
 }  // namespace stiv

@@ -89,7 +89,7 @@ struct Kept {
     for (Index row = 0; row < end.rows(); row += 2) end(row, 2) += 1e-3;  // vertices at rest are ignored
     const Step step{q, end, {0.01, 0.5}};
     swept.update(step, Execution(1), SweptVertices::Reuse::forbidden);
-    tree.update(step, swept, SweptVertices::Change::all, Execution(1));
+    tree.update(step, swept, SweptVertices::Change::all, tree.is_spoiled(q), Execution(1));
   }
 
   std::span<const Index, 3> corners(Index face) const {
@@ -139,7 +139,7 @@ TEST_CASE(
     SweptVertices swept(surface);
     const Execution execution(1);
     PrimitiveTree<2> edges(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()));
-    edges.update(step, swept, swept.update(step, execution), execution);
+    edges.update(step, swept, swept.update(step, execution), false, execution);
     const GroupRelations bodies{{}, swept.body_frames()};
     PairBuffer found;
     for (const Bvh::Task& task : edges.tree().tasks(edges.tree(), bodies))
@@ -164,9 +164,9 @@ TEST_CASE("primitive tree: pairs of a traversal come with their corners, and so 
   PrimitiveTree<1> vertices(surface, numbers.data(), surface.vertex_count());
   PrimitiveTree<2> edges(surface, surface.edges().data(), static_cast<Index>(surface.edges().rows()));
   PrimitiveTree<3> faces(surface, surface.triangles().data(), static_cast<Index>(surface.triangles().rows()));
-  vertices.update(step, swept, change, execution);
-  edges.update(step, swept, change, execution);
-  faces.update(step, swept, change, execution);
+  vertices.update(step, swept, change, false, execution);
+  edges.update(step, swept, change, false, execution);
+  faces.update(step, swept, change, false, execution);
   const auto check = [&](EventKind kind, const Bvh& a, const Bvh& b) {
     PairBuffer found;
     for (const Bvh::Task& task : a.tasks(b, {})) a.overlaps(task, b, {}, found);
