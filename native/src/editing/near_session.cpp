@@ -20,11 +20,8 @@ NextSession::NextSession(const Eigen::AlignedBox3d& box, int threads, Make make)
   if (threads == 1) return;
   made_ = std::async(std::launch::async, [this] {
     const FloatingPointScope floating_point;
+    lower_thread_priority();
     execution_.set_owner(refuse_calls);
-    execution_.cancel_when([this, is_lowered = false]() mutable {  // a thread may lower its own priority alone
-      if (calls_go_first_ && !std::exchange(is_lowered, true)) lower_thread_priority();
-      return false;
-    });
     return make_(execution_);
   });
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <atomic>
 #include <functional>
 #include <future>
 #include <memory>
@@ -34,8 +33,6 @@ class NextSession {
   NextSession& operator=(const NextSession&) = delete;
 
   const Eigen::AlignedBox3d& box() const { return box_; }
-  /// From now on, the other thread has a lower priority. Before, it has an equal share of the processors.
-  void let_calls_go_first() { calls_go_first_ = true; }
   /// The session, as soon as it is made. If it cannot be made in another thread, it is made in this one.
   /// @throws Interrupted if the call is cancelled; then this may be called again
   std::unique_ptr<NearSession> take(Execution& of_call);
@@ -44,7 +41,6 @@ class NextSession {
   Eigen::AlignedBox3d box_;
   Make make_;
   Execution execution_{1};
-  std::atomic<bool> calls_go_first_ = false;
   std::future<std::unique_ptr<NearSession>> made_;
 };
 

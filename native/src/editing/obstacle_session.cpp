@@ -209,11 +209,7 @@ class ObstacleSession final : public SessionImplementation {
   /// Prepares the session in the next box of a drag that is about to leave the present one. Which box depends on
   /// accepted states alone, and not on the number of threads.
   void look_ahead(bool has_contacts, int threads) {
-    prepare_next(has_contacts ? contact_ticks_ahead : free_ticks_ahead, threads);
-    if (next_ && has_contacts) next_->let_calls_go_first();
-  }
-
-  void prepare_next(double ticks_ahead, int threads) {
+    const double ticks_ahead = has_contacts ? contact_ticks_ahead : free_ticks_ahead;
     if (!options_.excluded.empty() || !options_.overlapping.empty()) return;  // compared with where a session began
     const Eigen::AlignedBox3d& now = bounds_;
     if (now.isEmpty() || is_inside(after(now, ticks_ahead))) return;

@@ -6,10 +6,6 @@
 #include <atomic>
 #include <stdexcept>
 
-#if defined(__linux__)
-#include <sys/resource.h>
-#endif
-
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -68,32 +64,6 @@ TEST_CASE("next session: what another thread cannot make is made in that of the 
   CHECK(calls == 1);  // not from the other thread
   CHECK_THROWS_WITH(next.take(execution), "the reason");
 }
-
-#if defined(__linux__)
-TEST_CASE("next session: the other thread has a lower priority once calls go first, and not before") {
-  const auto priority = [] { return getpriority(PRIO_PROCESS, 0); };  // in Linux, of this thread
-  std::atomic<int> before = 0, after = 0;
-  std::atomic<bool> has_begun = false, may_end = false;
-  NextSession next(box, 2, [&](Execution& execution) {
-    execution.check();
-    before = priority();
-    has_begun = true;
-    while (!may_end) {
-    }
-    execution.check();
-    after = priority();
-    return session_with_body(4);
-  });
-  while (!has_begun) {
-  }
-  next.let_calls_go_first();
-  may_end = true;
-  Execution execution(2);
-  CHECK(next.take(execution)->scene.obstacle_bodies == std::vector<Index>{4});
-  CHECK(before == priority());
-  CHECK((after > before || before == 19));
-}
-#endif
 
 TEST_CASE("next session: a cancelled call leaves it to the next one") {
   std::atomic<bool> may_end = false;
