@@ -17,8 +17,8 @@ namespace stiv {
 namespace {
 
 constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
-// If so many more ticks of a drag leave the box, the next one is prepared. That takes many free ticks, or a third as
-// many with contacts.
+// If this many more ticks of a drag leave the box, the next one is prepared. That takes many free ticks, or a third of
+// them with contacts.
 constexpr double free_ticks_ahead = 18, contact_ticks_ahead = 12;
 
 void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
