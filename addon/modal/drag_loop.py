@@ -30,6 +30,7 @@ HAND_OVER = 0.008  # seconds after which a solve ends with the state that it acc
 MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 COMPARING_TIME = 5.0  # seconds that the comparison with the edit from the start may take after the confirmation
+FINISHING_TIME = 10.0  # seconds after the confirmation in which solves that meet obstacles may come closer
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 
@@ -134,7 +135,7 @@ class DragLoop:
         self._calls = calls
         self._begun = state.request
         self._pending = False
-        self._confirmed = False
+        self._confirmed, self._confirmed_at = False, 0.0
         self._unfinished: Goal | None = None
         self._refinement = Refinement.SETTLING
         self._refusal = ""
@@ -343,13 +344,16 @@ class DragLoop:
         self._refusal = ""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
         may_gain = self._repeated.may_gain(goal.state, found, self._confirmed, self._rests())
-        self._pending = not self.stopped and (may_gain or not same_goal(goal.state, self.state))
+        is_late = self._is_late(found)
+        self._pending = not self.stopped and ((may_gain and not is_late) or not same_goal(goal.state, self.state))
         self._unfinished = goal if nothing_accepted else None
         self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
         if self._pending:
             return
         if found.status == "reached":
             self._refinement = Refinement.NONE
+        elif is_late:
+            self._end_late()
         elif self._repeated.is_poor or (found.status == "blocked" and self._repeated.fruitless > 0):
             self._end_settling()
 
@@ -363,7 +367,9 @@ class DragLoop:
         if settled.status != "budget" or self.stopped:
             return
         self._refinement = Refinement.SETTLING
-        if not self._repeated.may_settle(settled, self._confirmed or self._rests()):
+        if self._is_late(settled):
+            self._end_late()
+        elif not self._repeated.may_settle(settled, self._confirmed or self._rests()):
             self._end_settling()
 
     def _take_confirmed(self, confirmed: EditResult) -> None:
@@ -379,6 +385,16 @@ class DragLoop:
         self._refinement = Refinement.CONFIRMING
         if self.result is not None and self.result.status == "budget" and self.result.path:
             self.result = replace(self.result, status="corrected")
+
+    def _is_late(self, found: EditResult) -> bool:
+        """Whether to keep what the user sees, which obstacles hold. A free motion ends at its goal, however late."""
+        waited = time.perf_counter() - self._confirmed_at if self._confirmed else 0.0
+        return waited > FINISHING_TIME and len(found.events) > 0
+
+    def _end_late(self) -> None:
+        """End the solves without a comparison."""
+        self._end_settling()
+        self._refinement = Refinement.NONE
 
     def _is_cancelled(self, found: EditResult | ValueError) -> bool:
         """Whether a motion cancelled the solve, whose goal is no longer wanted."""
@@ -422,7 +438,7 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
-        self._waited_since = time.perf_counter()
+        self._confirmed_at = self._waited_since = time.perf_counter()
         self._unfinished = None  # the goal is the position where the mouse was released
         if self.result is not None and self.result.status == "budget":
             self._pending = True

@@ -19,6 +19,7 @@ class FakeResult:
     energy: float = 0.0
     blocking = ()
     seconds: float = 0.0
+    events: tuple[object, ...] = ()
 
     @property
     def timings(self) -> dict[str, float]:
@@ -35,7 +36,7 @@ class FakeEdit:
     `solving`: seconds that each solve reports. `budgets`, `hand_overs`: of all solves. `taking`: whether states can be
     taken from the session; `flips`: whether Blender then shows them with intersections; `cutting`: states that it shows
     with intersections. `from_start`: where the edit from the start ends, if closer to the goal. `passed`: the last
-    state that was written and passed the test.
+    state that was written and passed the test. `touching`: whether all solves meet an obstacle.
     """
 
     statuses: list[str] = field(default_factory=list)
@@ -61,6 +62,7 @@ class FakeEdit:
     furthest: float = 10.0
     settling: bool = False
     from_start: float | None = None
+    touching: bool = False
     busy: bool = False
     start_digest = "start"
     controls = ()
@@ -174,7 +176,8 @@ class FakeEdit:
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
         path = (self.accepted,) if self.furthest > 0 else ()
-        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2, self.solving)
+        events = (object(),) if self.touching else ()
+        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2, self.solving, events)
 
 
 class FakeTask(Task[Any]):

@@ -384,6 +384,26 @@ def test_a_slow_comparison_with_the_edit_from_the_start_ends_soon_after_the_conf
     assert drag.progress is Progress.FINISHED and not drag.stopped and edit.shown == edit.accepted == 0.3
 
 
+@pytest.mark.parametrize("touching", [True, False])
+def test_solves_that_meet_obstacles_end_some_time_after_the_confirmation(
+    touching: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A motion that meets none goes to its goal."""
+    monkeypatch.setattr(drag_loop, "FINISHING_TIME", -1.0)
+    monkeypatch.setattr(drag_loop, "REST_TIME", 1e9)
+    edit = FakeEdit(statuses=["budget"] * 8, furthest=0.1, from_start=0.9, touching=touching)
+    drag = new_drag(edit)
+    drag.handle(move_to(90))
+    drag.tick()
+    drag.handle(Event("LEFTMOUSE"))
+    for _ in range(10):
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and not drag.stopped
+    assert edit.shown == pytest.approx(0.1 if touching else 0.9)
+    assert "confirm" not in edit.calls  # one reaches its goal, the other is too late
+    assert drag.result.status == ("corrected" if touching else "reached")
+
+
 def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
     edit = FakeEdit(settling=True)
     drag = new_drag(edit)
