@@ -135,7 +135,7 @@ class DragLoop:
         self._calls = calls
         self._begun = state.request
         self._pending = False
-        self._confirmed, self._confirmed_at = False, 0.0
+        self._confirmed, self._confirmed_at = False, math.inf
         self._unfinished: Goal | None = None
         self._refinement = Refinement.SETTLING
         self._refusal = ""
@@ -388,8 +388,7 @@ class DragLoop:
 
     def _is_late(self, found: EditResult) -> bool:
         """Whether to keep what the user sees, which obstacles hold. A free motion ends at its goal, however late."""
-        waited = time.perf_counter() - self._confirmed_at if self._confirmed else 0.0
-        return waited > FINISHING_TIME and len(found.events) > 0
+        return time.perf_counter() - self._confirmed_at > FINISHING_TIME and len(found.events) > 0
 
     def _end_late(self) -> None:
         """End the solves without a comparison."""
