@@ -5,8 +5,8 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
+#include "deformation/finite_differences.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -14,12 +14,7 @@ using namespace stiv;
 namespace {
 
 SinglePositions random_points(Index count, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::uniform_real_distribution<float> coordinate(-3, 3);
-  SinglePositions points(count, 3);
-  for (Index row = 0; row < count; ++row)
-    for (Index axis = 0; axis < 3; ++axis) points(row, axis) = coordinate(generator);
-  return points;
+  return (3 * testing::random_positions(count, seed)).cast<float>();
 }
 
 /// A quad with a square base whose last corner is `height` above the plane of the others.
