@@ -2,7 +2,8 @@
 """Intersections of triangles in rational arithmetic: slow, and correct by construction.
 
 It clips the parameter domain of one triangle by the linear constraints that describe the other, and shares
-only the definition with the core. It works for doubles of any size, and for triangles without area.
+only the definition with the core. It works for doubles of any size, and for triangles without area. Corners
+are scaled to integers by a power of two, so that fractions, many times slower, appear only where polygons are clipped.
 """
 
 from collections.abc import Iterable, Sequence
@@ -13,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-Vector = tuple[Fraction, ...]
+Number = int | Fraction
+Vector = tuple[Number, ...]
 """Three coordinates, or two parameters (s, t)."""
 
 
@@ -21,11 +23,11 @@ class Constraint(NamedTuple):
     """normal . x >= offset"""
 
     normal: Vector
-    offset: Fraction
+    offset: Number
 
 
-def dot(a: Vector, b: Vector) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
+def dot(a: Vector, b: Vector) -> Number:
+    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def minus(a: Vector, b: Vector) -> Vector:
@@ -36,8 +38,11 @@ def cross(a: Vector, b: Vector) -> Vector:
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def rational(point: Iterable[float]) -> Vector:
-    return tuple(Fraction(float(x)) for x in point)
+def integers(points: Iterable[Iterable[float]]) -> list[Vector]:
+    """Points multiplied by the least power of two that makes all coordinates integers."""
+    ratios = [[float(x).as_integer_ratio() for x in point] for point in points]
+    scale = max(denominator for point in ratios for _, denominator in point)
+    return [tuple(numerator * (scale // denominator) for numerator, denominator in point) for point in ratios]
 
 
 def equal(normal: Vector, point: Vector) -> list[Constraint]:
@@ -48,8 +53,7 @@ def equal(normal: Vector, point: Vector) -> list[Constraint]:
 def constraints_of_segment(a: Vector, b: Vector) -> list[Constraint]:
     along = minus(b, a)
     x, y, z = along
-    zero = Fraction(0)
-    found = [c for normal in ((zero, z, -y), (-z, zero, x), (y, -x, zero)) for c in equal(normal, a)]
+    found = [c for normal in ((0, z, -y), (-z, 0, x), (y, -x, 0)) for c in equal(normal, a)]
     return [*found, Constraint(along, dot(along, a)), Constraint(tuple(-c for c in along), -dot(along, b))]
 
 
@@ -64,7 +68,7 @@ def constraints_of_triangle(corners: Sequence[Vector]) -> list[Constraint]:
     longest = max(combinations(corners, 2), key=lambda ends: dot(minus(ends[0], ends[1]), minus(ends[0], ends[1])))
     if longest[0] != longest[1]:
         return constraints_of_segment(*longest)
-    axes = [tuple(Fraction(int(i == j)) for i in range(3)) for j in range(3)]
+    axes = [tuple(int(i == j) for i in range(3)) for j in range(3)]
     return [c for axis in axes for c in equal(axis, a)]
 
 
@@ -75,7 +79,7 @@ def clip(polygon: list[Vector], constraint: Constraint) -> list[Vector]:
     for k, point in enumerate(polygon):
         before = k - 1
         if height[k] * height[before] < 0:
-            share = height[before] / (height[before] - height[k])
+            share = Fraction(height[before], height[before] - height[k])
             left.append(tuple(x + share * (y - x) for x, y in zip(polygon[before], point, strict=True)))
         if height[k] >= 0:
             left.append(point)
@@ -85,7 +89,7 @@ def clip(polygon: list[Vector], constraint: Constraint) -> list[Vector]:
 def common_points(first: Sequence[Vector], second: Sequence[Vector]) -> list[Vector]:
     """Return points whose hull is the intersection of two triangles."""
     origin, u, v = first[0], minus(first[1], first[0]), minus(first[2], first[0])
-    polygon = [(Fraction(0), Fraction(0)), (Fraction(1), Fraction(0)), (Fraction(0), Fraction(1))]
+    polygon: list[Vector] = [(0, 0), (1, 0), (0, 1)]
     for normal, offset in constraints_of_triangle(second):
         in_parameters = Constraint((dot(normal, u), dot(normal, v)), offset - dot(normal, origin))
         polygon = clip(polygon, in_parameters)
@@ -112,9 +116,10 @@ def triangles_intersect(first: Sequence[int], second: Sequence[int], vertices: A
     shared = set(map(int, first)) & set(map(int, second))
     if len(shared) == 3:
         return True
-    a, b = ([rational(q[k]) for k in corners] for corners in (first, second))
-    hull = [rational(q[k]) for k in shared]
-    return any(not in_hull(point, hull) for point in common_points(a, b))
+    indices = [*map(int, first), *map(int, second)]
+    corners = integers(q[indices])
+    hull = [corners[indices.index(k)] for k in shared]
+    return any(not in_hull(point, hull) for point in common_points(corners[:3], corners[3:]))
 
 
 def find_intersections(vertices: ArrayLike, triangles: ArrayLike) -> set[tuple[int, int]]:
