@@ -22,6 +22,7 @@ WINDOW_SEQUENCES := 200
 BENCHMARKS := $(patsubst benchmarks/%.py,%,$(wildcard benchmarks/*.py)) \
 	$(patsubst benchmarks/%/__main__.py,%,$(wildcard benchmarks/*/__main__.py))
 BLENDER_VENVS := $(BLENDERS:%=build/venv-blender-%/ready)
+BLENDER_MODULES := $(BLENDERS:%=build/venv-blender-%/downloaded)
 
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
@@ -29,7 +30,11 @@ endif
 
 .PHONY: release docs test-docs test-long test-arm64 test-arm64-native test-arm64-python peers fuzz coverage help demo test wheels test-windows test-windows-native test-windows-blender test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
 .SILENT:
+# Several steps write to build/venv. `make test` downloads Blender's modules, which no other step writes to, beside the
+# compiler.
+ifndef DOWNLOAD_BESIDE
 .NOTPARALLEL:
+endif
 
 help: ## List the targets
 	sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 18
@@ -37,7 +42,9 @@ help: ## List the targets
 demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/demo/ and check the result
 	build/venv-blender/bin/python -m stiv.command_line demo --output build/demo
 
-test: build/stiv_tests build/stiv_sanitized_tests build/stiv_thread_tests build/venv/stiv build/venv/lint $(BLENDER_VENVS) ## Run every test on every Blender module
+test: ## Run every test on every Blender module
+	$(MAKE) --no-print-directory --jobs=2 DOWNLOAD_BESIDE=1 build/stiv_tests $(BLENDER_MODULES) build/stiv_sanitized_tests build/stiv_thread_tests
+	$(MAKE) --no-print-directory build/venv/stiv build/venv/lint $(BLENDER_VENVS)
 	build/venv/bin/python tools/run_tests.py native sanitizers threads windows window python blender lint
 
 test-native: build/stiv_tests ## Run the core's own tests
@@ -225,9 +232,13 @@ build/stiv_thread_tests: $(NATIVE_SOURCES) $(OPENSUBDIV)
 	cmake --build --preset tsan --target stiv_thread_tests
 	touch $@
 
-# Each finds the package like a user's Blender: in the files that Blender unpacked from the zip.
-build/venv-blender-%/ready: $(EXTENSION) tools/requirements/test.txt tools/install_extension.py
+.PRECIOUS: build/venv-blender-%/downloaded
+build/venv-blender-%/downloaded: tools/requirements/test.txt | build/debian
 	tools/make_venv.sh $(PYTHON) $(@D) bpy==$* -r tools/requirements/test.txt
+	touch $@
+
+# Each finds the package like a user's Blender: in the files that Blender unpacked from the zip.
+build/venv-blender-%/ready: build/venv-blender-%/downloaded $(EXTENSION) tools/install_extension.py
 	$(@D)/bin/python tools/install_extension.py "$$(cat $(EXTENSION))"
 	touch $@
 
