@@ -7,24 +7,17 @@ namespace stiv {
 
 namespace {
 
-constexpr std::size_t most_values = std::size_t{1} << 23;       // 64 MB
-constexpr std::size_t most_kept_values = std::size_t{1} << 18;  // for the next drag: 2 MB
+constexpr std::size_t most_values = std::size_t{1} << 23;  // 64 MB
 
 void append(std::vector<double>& values, const Controls& controls) {
   values.insert(values.end(), controls.data(), controls.data() + controls.size());
-}
-
-void clear(std::vector<double>& values) {
-  values.clear();
-  if (values.capacity() > most_kept_values) values.shrink_to_fit();
 }
 
 }  // namespace
 
 void DragTrail::begin(const Controls& start) {
   rows_ = start.rows();
-  clear(goals_);
-  clear(accepted_);
+  free_all();
   append(accepted_, start);
 }
 
@@ -33,8 +26,12 @@ void DragTrail::add(const Controls& goal, const std::vector<Controls>& path) {
   append(goals_, goal);
   for (const Controls& controls : path) append(accepted_, controls);
   if (goals_.size() + accepted_.size() <= most_values) return;
-  clear(goals_);
-  clear(accepted_);
+  free_all();
+}
+
+void DragTrail::free_all() {
+  goals_ = Values();
+  accepted_ = Values();
 }
 
 std::vector<Controls> DragTrail::way_back() const {

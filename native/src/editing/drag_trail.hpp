@@ -22,10 +22,10 @@ class DragTrail {
   bool is_straight(const Controls& goal, double tolerance) const;
 
  private:
-  // One after another, in memory that the next drag uses again. Many small arrays between those of the calls would
-  // fragment the heap of a long session.
+  // One after another in few arrays: many small ones between those of the calls would fragment the heap.
   using Values = std::vector<double>;
 
+  void free_all();
   std::size_t count_in(const Values& values) const { return values.size() / at(3 * rows_); }
   Eigen::Map<const Controls> controls_at(const Values& values, std::size_t number) const {
     return {values.data() + number * at(3 * rows_), rows_, 3};

@@ -94,8 +94,8 @@ class EditSession {
   /// `restore`. @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes = {});
 
-  /// Frees what is prepared for further calls of a drag, and returns free pages of the heap to the system. Further calls
-  /// remain possible.
+  /// Frees what is prepared for further calls of a drag, and returns free pages of the heap to the system. Further
+  /// calls remain possible.
   void end_drag();
 
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
