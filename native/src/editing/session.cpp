@@ -56,7 +56,7 @@ class SurfaceSession final : public SessionImplementation {
     context_.check_controls(controls, "controls");
     context_.check_controls(goal, "goal");
     context_.limits().check(controls);
-    State state{controls, context_.surface_at(controls, execution)};
+    const State state{controls, context_.surface_at(controls, execution)};
     const auto equals = [&](const Controls& known) { return controls.rows() == known.rows() && controls == known; };
     const bool is_known = equals(checked_) || equals(accepted_.controls);
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
@@ -71,7 +71,7 @@ class SurfaceSession final : public SessionImplementation {
     drag_.followed = followed;
     drag_ = {.followed = std::move(drag_.followed)};
     goal_ = goal;
-    accepted_ = state;  // not moved: it stays where it is, as with Transaction
+    accepted_ = state;  // in place, as by a Transaction
     is_dragging_ = goal != controls;
   }
 
