@@ -243,7 +243,10 @@ class EditSession:
         return self._job(self._session.start_confirm())
 
     def end_drag(self) -> None:
-        """Free what is prepared for further calls of a drag beside obstacles. They remain possible."""
+        """Free what is prepared for further calls of a drag, and pages that the heap does not use (glibc).
+
+        Calls remain possible.
+        """
         self._session.end_drag()
 
     def _job(self, native: _native.Job) -> Job[EditResult]:

@@ -13,6 +13,7 @@
 #include "editing/sub_edit_loop.hpp"
 #include "editing/sub_goals.hpp"
 #include "editing/tightening.hpp"
+#include "free_memory.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -55,7 +56,7 @@ class SurfaceSession final : public SessionImplementation {
     context_.check_controls(controls, "controls");
     context_.check_controls(goal, "goal");
     context_.limits().check(controls);
-    State state{controls, context_.surface_at(controls, execution)};
+    const State state{controls, context_.surface_at(controls, execution)};
     const auto equals = [&](const Controls& known) { return controls.rows() == known.rows() && controls == known; };
     const bool is_known = equals(checked_) || equals(accepted_.controls);
     if (!context_.is_empty() && !is_known) queries_.check_start(state.surface, execution);
@@ -66,9 +67,11 @@ class SurfaceSession final : public SessionImplementation {
     queries_.clear_cache();
     trail_.begin(controls);
     const Controls aim = context_.limits().nearest(goal);
-    drag_ = {.followed = aim == controls ? state : last_feasible(context_, state, aim, execution)};
+    const State followed = aim == controls ? state : last_feasible(context_, state, aim, execution);
+    drag_.followed = followed;
+    drag_ = {.followed = std::move(drag_.followed)};
     goal_ = goal;
-    accepted_ = std::move(state);
+    accepted_ = state;  // in place, as by a Transaction
     is_dragging_ = goal != controls;
   }
 
@@ -168,20 +171,21 @@ class SurfaceSession final : public SessionImplementation {
   const Surface& topology() const override { return context_.surface(); }
 
  private:
-  /// Restores the session when it ends, unless its call is to last.
+  /// Restores the session when it ends, unless its call is to last. The session works on copies of its states: results
+  /// are stored where the states were, because arrays that moved with each call would fragment the heap.
   class Transaction {
    public:
     explicit Transaction(SurfaceSession& session)
         : session_(session),
-          accepted_(session.accepted_),
-          followed_(session.drag_.followed),
+          accepted_(std::exchange(session.accepted_, State(session.accepted_))),
+          followed_(std::exchange(session.drag_.followed, State(session.drag_.followed))),
           overshoot_(session.overshoot_) {}
     Transaction(const Transaction&) = delete;
     Transaction& operator=(const Transaction&) = delete;
     ~Transaction() {
-      if (lasts_) return;
       session_.accepted_ = std::move(accepted_);
       session_.drag_.followed = std::move(followed_);
+      if (lasts_) return;
       session_.overshoot_ = overshoot_;
       session_.progress_.reset();
       session_.tightening_.reset();
@@ -189,11 +193,15 @@ class SurfaceSession final : public SessionImplementation {
     }
 
     const Controls& controls_before() const { return accepted_.controls; }
-    void commit() { lasts_ = true; }
+    void commit(const State& followed) {
+      accepted_ = session_.accepted_;
+      followed_ = followed;
+      lasts_ = true;
+    }
 
    private:
     SurfaceSession& session_;
-    State accepted_, followed_;
+    State accepted_, followed_;  ///< before the call; those to keep, once it is to last
     OvershootMemory overshoot_;
     bool lasts_ = false;
   };
@@ -318,10 +326,11 @@ class SurfaceSession final : public SessionImplementation {
       if (!context_.is_empty() && target.controls != accepted_.controls)
         work(call, {target.controls, target.surface, false});
       goal_ = goal;
-      drag_.followed = target;
       progress_.reset();
-      transaction.commit();
-      return status_of(context_, transaction.controls_before(), accepted_.controls, goal, call.report);
+      const Controls& before = transaction.controls_before();
+      const EditStatus status = status_of(context_, before, accepted_.controls, goal, call.report);
+      transaction.commit(target);
+      return status;
     } catch (const Interrupted&) {
       if (target.surface.rows() != accepted_.surface.rows()) target.surface = accepted_.surface;  // not yet known
       if (call.execution.cancel_requested()) {
@@ -330,8 +339,8 @@ class SurfaceSession final : public SessionImplementation {
       }
       goal_ = goal;
       const bool accepted_some = !is_dragging_ || !call.report.path.empty();
-      if (followed == FollowedGoal::after_any_acceptance && accepted_some) drag_.followed = target;
-      transaction.commit();
+      const bool follows_target = followed == FollowedGoal::after_any_acceptance && accepted_some;
+      transaction.commit(follows_target ? target : drag_.followed);
       return EditStatus::budget;
     }
   }
@@ -387,12 +396,18 @@ EditResult EditSession::drag(const Controls& goal, Execution& execution, std::op
 }
 EditResult EditSession::settle(Execution& execution) { return implementation_->settle(execution); }
 EditResult EditSession::confirm(Execution& execution) { return implementation_->confirm(execution); }
-void EditSession::restore(const Controls& controls, const Controls& goal) { implementation_->restore(controls, goal); }
+void EditSession::restore(const Controls& controls, const Controls& goal) {
+  implementation_->restore(controls, goal);
+  release_free_memory();
+}
 void EditSession::set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) {
   implementation_->set_weights(std::move(weights), std::move(weight_axes));
 }
 
-void EditSession::end_drag() { implementation_->end_drag(); }
+void EditSession::end_drag() {
+  implementation_->end_drag();
+  release_free_memory();
+}
 
 bool EditSession::is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) {
   return implementation_->is_step_free(start, end, execution);

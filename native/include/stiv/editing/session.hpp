@@ -85,7 +85,8 @@ class EditSession {
   EditResult confirm(Execution& execution);
 
   /// Makes an earlier accepted state (undo, Esc) the accepted one. The next drag's increment counts from `goal`. Clears
-  /// the cached candidates, so later results do not depend on earlier calls. @throws StartIntersectsError
+  /// the cached candidates, so later results do not depend on earlier calls, and returns free pages of the heap to the
+  /// system. @throws StartIntersectsError
   void restore(const Controls& controls, const Controls& goal);
   void restore(const Controls& controls) { restore(controls, controls); }
 
@@ -93,7 +94,8 @@ class EditSession {
   /// `restore`. @throws InputError, with nothing changed
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes = {});
 
-  /// Frees what is prepared for further calls of a drag. They remain possible.
+  /// Frees what is prepared for further calls of a drag, and returns free pages of the heap to the system. Further
+  /// calls remain possible.
   void end_drag();
 
   /// Are the path and the end of a linear step between two surfaces free of intersections, given that its start is?
