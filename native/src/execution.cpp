@@ -11,6 +11,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "chunk_shares.hpp"
 #include "stiv/error.hpp"
 #include "thread_pool.hpp"
 
@@ -39,6 +40,12 @@ void write_control(std::uint32_t) {}
 #endif
 
 thread_local Execution::Owner owner_of_thread;
+
+void lower(std::atomic<Index>& least, Index value) {
+  Index seen = least.load(std::memory_order_relaxed);
+  while (value < seen && !least.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
+  }
+}
 
 }  // namespace
 
@@ -78,28 +85,29 @@ void Execution::set_owner(Owner owner) {
 
 void Execution::for_chunks(Index count, Index chunk_size, const std::function<void(Index, Index, Index)>& work) const {
   const Index chunks = chunk_count(count, chunk_size);
-  std::atomic<Index> next{0};
+  const bool shared = std::min<Index>(threads_, chunks) > 1 && !in_loop_.exchange(true, std::memory_order_acquire);
+  ChunkShares shares(chunks, shared ? threads_ : 1);
   std::vector<std::exception_ptr> failures(static_cast<std::size_t>(chunks));
-  std::atomic<bool> failed{false};
-  const auto run = [&] {
+  std::atomic<Index> first_failure{chunks};
+  const auto run = [&](int thread) {
     const FloatingPointScope floating_point;
-    for (Index chunk = next++; chunk < chunks && !failed.load(std::memory_order_relaxed); chunk = next++) {
+    for (Index chunk = shares.take(thread); chunk >= 0; chunk = shares.take(thread)) {
+      if (chunk > first_failure.load(std::memory_order_relaxed)) continue;
       try {
         check();
         work(chunk * chunk_size, std::min(count, (chunk + 1) * chunk_size), chunk);
       } catch (...) {
         failures[chunk] = std::current_exception();
-        failed.store(true, std::memory_order_relaxed);
+        lower(first_failure, chunk);
       }
     }
   };
-  const bool shared = std::min<Index>(threads_, chunks) > 1 && !in_loop_.exchange(true, std::memory_order_acquire);
   if (shared) {
     if (!helpers_) helpers_ = std::make_unique<ThreadPool>(threads_ - 1);
     helpers_->run(std::ref(run));
     in_loop_.store(false, std::memory_order_release);
   } else {
-    run();
+    run(0);
   }
   for (const std::exception_ptr& failure : failures)
     if (failure) std::rethrow_exception(failure);

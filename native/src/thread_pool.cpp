@@ -78,7 +78,7 @@ int usable_processors() { return limited(std::max(1, allowed_processors())); }
 ThreadPool::ThreadPool(int count) : polls_(count < allowed_processors()) {
   threads_.reserve(static_cast<std::size_t>(count));
   try {
-    for (int k = 0; k < count; ++k) threads_.emplace_back([this] { wait_for_work(); });
+    for (int k = 1; k <= count; ++k) threads_.emplace_back([this, k] { wait_for_work(k); });
   } catch (const std::exception&) {
     return;  // fewer threads are enough
   }
@@ -94,14 +94,14 @@ ThreadPool::~ThreadPool() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-void ThreadPool::run(const std::function<void()>& work) {
+void ThreadPool::run(const std::function<void(int thread)>& work) {
   {
     const std::lock_guard lock(mutex_);
     work_ = &work;
     ++number_;
   }
   begun_.notify_all();
-  work();
+  work(0);
   {
     const std::lock_guard lock(mutex_);
     work_ = nullptr;
@@ -112,7 +112,7 @@ void ThreadPool::run(const std::function<void()>& work) {
   ended_.wait(lock, have_ended);
 }
 
-void ThreadPool::wait_for_work() {
+void ThreadPool::wait_for_work(int thread) {
   for (std::uint64_t seen = 0;;) {
     const auto is_called = [&] { return number_ != seen; };
     const bool is_awake = polls_ && poll(is_called);
@@ -121,10 +121,10 @@ void ThreadPool::wait_for_work() {
     seen = number_;
     if (closing_) return;
     if (work_ == nullptr) continue;  // it has ended already
-    const std::function<void()>& work = *work_;
+    const std::function<void(int)>& work = *work_;
     ++busy_;
     lock.unlock();
-    work();
+    work(thread);
     lock.lock();
     if (--busy_ == 0) ended_.notify_one();
   }

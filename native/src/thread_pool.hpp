@@ -26,17 +26,17 @@ class ThreadPool {
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
-  /// Calls `work` in the calling thread and in the threads that come before it ends there; returns when all have
-  /// ended. It must not throw, and distributes its chunks itself. One call at a time.
-  void run(const std::function<void()>& work);
+  /// Calls `work(thread)` in the calling thread, number 0, and in the threads that come before it ends there; returns
+  /// when all have ended. It must not throw, and distributes its chunks itself. One call at a time.
+  void run(const std::function<void(int thread)>& work);
 
  private:
-  void wait_for_work();
+  void wait_for_work(int thread);
 
   bool polls_;  // each thread has a processor: none takes the time of another
   std::mutex mutex_;
   std::condition_variable begun_, ended_;
-  const std::function<void()>* work_ = nullptr;  // null: no work is open
+  const std::function<void(int)>* work_ = nullptr;  // null: no work is open
   // The mutex is held while these change. Threads that poll read them without it.
   std::atomic<std::uint64_t> number_ = 0;  // of the work, so that no thread does it twice
   std::atomic<int> busy_ = 0;

@@ -86,7 +86,7 @@ bool passes_aside(EditCall& call, const Aim& aim, const Vector3& offset) {
   if (!aside || goal == call.accepted.controls) return false;
   const State from = call.accepted;
   const std::size_t steps = call.report.path.size();
-  run_sub_edits(call, {goal, std::move(aside->surface), false});
+  run_sub_edits(call, {goal, aside->surface, false});
   pull(call, aim, std::numeric_limits<double>::infinity());
   const double before = call.context.energy(from.surface, aim.surface),
                after = call.context.energy(call.accepted.surface, aim.surface);

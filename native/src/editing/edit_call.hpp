@@ -86,8 +86,8 @@ struct EditCall {
 /// The goal of a sub-edit.
 struct Aim {
   Controls controls;
-  Positions surface;  ///< from which the energy is measured: the surface of the final goal
-  bool must_improve;  ///< accept only states with lower energy
+  const Positions& surface;  ///< from which the energy is measured: the surface of the final goal, which outlives this
+  bool must_improve;         ///< accept only states with lower energy
 };
 
 }  // namespace stiv

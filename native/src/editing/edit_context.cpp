@@ -68,7 +68,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obsta
   check_overlapping(*surface_, options_.overlapping);
   check_controls(start, "controls");
   const Positions q = deformation_->surface_in_range(start, execution);
-  check_positions(q);
+  check_positions(q, execution);
   if (q.rows() > 0) centre_ = (q.colwise().minCoeff() + q.colwise().maxCoeff()) / 2;
   centred_obstacles_ = obstacles_;
   centre(centred_obstacles_);
@@ -167,10 +167,12 @@ const Positions& EditContext::centred(const PositionsView& q, SceneRows& rows, c
   return about_centre;
 }
 
-void EditContext::check_positions(const PositionsView& q) const {
-  if (obstacles_.rows() == 0 || q.rows() + obstacles_.rows() != surface_->vertex_count())
-    return surface_->check_positions(q);
-  for (Index vertex = 0; vertex < q.rows(); ++vertex) surface_->check_position(vertex, q.row(vertex));
+void EditContext::check_positions(const PositionsView& q, const Execution& execution) const {
+  constexpr Index rows_per_chunk = 4096;
+  if (q.rows() + obstacles_.rows() != surface_->vertex_count()) return surface_->check_positions(q);
+  execution.for_chunks(static_cast<Index>(q.rows()), rows_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index vertex = begin; vertex < end; ++vertex) surface_->check_position(vertex, q.row(vertex));
+  });
 }
 
 }  // namespace stiv

@@ -92,7 +92,7 @@ class EditContext {
   /// The same for a surface, with the obstacles.
   const Positions& centred(const PositionsView& q, SceneRows& rows, const Execution& execution) const;
   /// @throws InputError if a surface, without the obstacles, has another shape or coordinates out of range
-  void check_positions(const PositionsView& q) const;
+  void check_positions(const PositionsView& q, const Execution& execution) const;
 
  private:
   void set_proximity(const Positions& start, const Controls& controls);

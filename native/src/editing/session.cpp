@@ -148,8 +148,8 @@ class SurfaceSession final : public SessionImplementation {
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     const FloatingPointScope floating_point;
-    context_.check_positions(start);
-    context_.check_positions(end);
+    context_.check_positions(start, execution);
+    context_.check_positions(end, execution);
     if (start == end && end == accepted_.surface) return true;
     return queries_.is_step_free(start, end, execution);
   }
@@ -322,7 +322,7 @@ class SurfaceSession final : public SessionImplementation {
       const Controls aim = context_.limits().nearest(goal);
       target = last_feasible(context_, accepted_, aim, call.execution);
       call.report.goal_is_infeasible = target.controls != aim;
-      context_.check_positions(target.surface);
+      context_.check_positions(target.surface, call.execution);
       if (!context_.is_empty() && target.controls != accepted_.controls)
         work(call, {target.controls, target.surface, false});
       goal_ = goal;

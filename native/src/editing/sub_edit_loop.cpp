@@ -48,7 +48,7 @@ class SubEditLoop {
   void run();
 
  private:
-  double energy_of(const State& state) const { return call_.context.energy(state.surface, aim_.surface); }
+  double energy_of(const State& state) const;
   RoundOutcome rounds(Projection projection, const StatePredicate& is_diverging = {});
   bool overshoots(const State& state) const { return fraction_ == 1 && energy_of(state) > energy_before_; }
   /// Whether a drag that is to hand over takes a solution without comparing it with another one.
@@ -64,9 +64,20 @@ class SubEditLoop {
 
   EditCall& call_;
   const Aim& aim_;
-  double energy_before_;  ///< of the accepted state, before the current sub-edit
-  double fraction_ = 1;   ///< of the way to the goal, within reach of one search
+  double energy_before_;            ///< of the accepted state, before the current sub-edit
+  double fraction_ = 1;             ///< of the way to the goal, within reach of one search
+  mutable Controls measured_;       ///< of the last energy
+  mutable double last_energy_ = 0;  ///< of these controls
 };
+
+/// A candidate is measured as a solution, before and after its acceptance; its surface depends on its controls alone.
+double SubEditLoop::energy_of(const State& state) const {
+  if (measured_.rows() != state.controls.rows() || measured_ != state.controls) {
+    last_energy_ = call_.context.energy(state.surface, aim_.surface);
+    measured_ = state.controls;
+  }
+  return last_energy_;
+}
 
 RoundOutcome SubEditLoop::rounds(Projection projection, const StatePredicate& is_diverging) {
   const FirstSearch first = aim_.must_improve ? FirstSearch::near_start : FirstSearch::whole_step;

@@ -23,18 +23,23 @@ bool has_marked(const std::array<Index, 3>& corners, const std::vector<unsigned 
 }  // namespace
 
 /// Relative to the largest coordinate that may move, rounded up to a power of two, so that it seldom changes.
-double NearPairList::reach_near(const PositionsView& q, const std::vector<unsigned char>& moved) const {
-  double largest = 0;
-  for (Index vertex = 0; vertex < q.rows(); ++vertex)
-    if ((moved.empty() || moved[at(vertex)] != 0) && !surface_->is_fixed(vertex))
-      largest = std::max(largest, q.row(vertex).cwiseAbs().maxCoeff());
+double NearPairList::reach_near(const PositionsView& q, const std::vector<unsigned char>& moved,
+                                const Execution& execution) const {
+  const auto count = static_cast<Index>(q.rows());
+  std::vector<double> each(at(Execution::chunk_count(count, chunk_size)), 0);
+  execution.for_chunks(count, chunk_size, [&](Index begin, Index end, Index chunk) {
+    for (Index vertex = begin; vertex < end; ++vertex)
+      if ((moved.empty() || moved[at(vertex)] != 0) && !surface_->is_fixed(vertex))
+        each[at(chunk)] = std::max(each[at(chunk)], q.row(vertex).cwiseAbs().maxCoeff());
+  });
+  const double largest = each.empty() ? 0 : std::ranges::max(each);
   int exponent = 0;
   return std::frexp(largest, &exponent) == 0 ? 0 : std::ldexp(relative_reach, exponent);
 }
 
 std::vector<unsigned char> NearPairList::begin(const PositionsView& q, const std::vector<unsigned char>& moved,
                                                const Execution& execution) {
-  const double reach = reach_near(q, moved);
+  const double reach = reach_near(q, moved, execution);
   reach_ = moved.empty() ? reach : std::max(reach_, reach);
   if (moved.empty() || !is_complete_ || near_->reach != reach_) return {};
   std::vector<unsigned char> searched = moved;

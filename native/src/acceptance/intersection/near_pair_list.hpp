@@ -46,7 +46,7 @@ class NearPairList {
   std::shared_ptr<const DeviationTest> test_near(const PositionsView& q) const;
 
  private:
-  double reach_near(const PositionsView& q, const std::vector<unsigned char>& moved) const;
+  double reach_near(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) const;
   void leave_to_test();
   bool is_in_star(const CornerPair& pair) const;
 
