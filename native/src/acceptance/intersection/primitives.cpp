@@ -2,6 +2,7 @@
 #include "acceptance/intersection/primitives.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace stiv {
 
@@ -9,7 +10,7 @@ namespace {
 
 constexpr Index chunk_size = 4096;
 
-PackedBox box_of(const std::array<Index, 3>& corners, const std::vector<PackedBox>& vertices) {
+PackedBox box_of(const std::array<Index, 3>& corners, std::span<const PackedBox> vertices) {
   PackedBox box = vertices[at(corners[0])];
   box.include(vertices[at(corners[1])]);
   box.include(vertices[at(corners[2])]);
@@ -51,13 +52,13 @@ void Primitives::note_changes(const std::vector<unsigned char>& bodies) {
   for (std::size_t body = 0; body < bodies.size(); ++body) changed_[body] |= bodies[body];
 }
 
-void Primitives::update(const std::vector<PackedBox>& vertices, const Execution& execution) {
+void Primitives::update(std::span<const PackedBox> vertices, const Execution& execution) {
   if (!tree_) {
-    std::vector<NumberedPoint> centres(corners_.size());
+    NumberedPoints centres(corners_.size());
     execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
       for (Index k = begin; k < end; ++k) centres[at(k)] = centre_of(box_of(corners(k), vertices).bounds(), k);
     });
-    tree_.emplace(centres, bodies_, CornerRows(), execution);
+    tree_.emplace(std::move(centres), bodies_, CornerRows(), execution);
     static_assert(sizeof(corners_[0]) == 3 * sizeof(Index));
     block_corners_ = tree_->block_corners({corners_.empty() ? nullptr : corners_[0].data(), 3});
   }

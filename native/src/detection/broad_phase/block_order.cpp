@@ -12,7 +12,6 @@ namespace stiv {
 
 namespace {
 
-using Points = std::vector<NumberedPoint>;
 using Items = std::span<NumberedPoint>;
 
 /// Points in a window, without an order and in one that is known. Larger ones cost more time, and yield slightly
@@ -39,7 +38,7 @@ void order_spatially(Items items, std::size_t run, Given given, const Execution&
 }
 
 /// Sorts the points by group (at least 0); those of one group keep their order. A counting sort.
-void sort_by_group(Points& points, const std::vector<Index>& groups) {
+void sort_by_group(NumberedPoints& points, std::span<const Index> groups) {
   const auto before = [&](const NumberedPoint& a, const NumberedPoint& b) {
     return groups[a.number] < groups[b.number];
   };
@@ -48,12 +47,12 @@ void sort_by_group(Points& points, const std::vector<Index>& groups) {
   for (const Index group : groups) ++starts[group];
   std::size_t sum = 0;
   for (std::size_t& start : starts) sum += std::exchange(start, sum);
-  const Points unsorted = points;
+  const NumberedPoints unsorted = points;
   for (const NumberedPoint& point : unsorted) points[starts[groups[point.number]]++] = point;
 }
 
 /// Appends the numbers of the points, padded to whole blocks.
-void append_blocks(std::span<const NumberedPoint> points, std::size_t block, std::vector<Index>& places) {
+void append_blocks(std::span<const NumberedPoint> points, std::size_t block, LargeArray<Index>& places) {
   for (const NumberedPoint& point : points) places.push_back(point.number);
   places.resize((places.size() + block - 1) / block * block, -1);
 }
@@ -75,7 +74,7 @@ class BlockList {
   }
 
   /// Appends the places of the blocks in a spatial order.
-  void append_ordered(const Execution& execution, std::vector<Index>& order) {
+  void append_ordered(const Execution& execution, LargeArray<Index>& order) {
     order_spatially(centres_, block_, Given::unordered, execution);
     for (const NumberedPoint& centre : centres_) {
       const auto first = places_.begin() + static_cast<std::ptrdiff_t>(block_) * centre.number;
@@ -92,14 +91,14 @@ class BlockList {
   }
 
   std::size_t block_;
-  std::vector<Index> places_;
-  Points centres_;
+  LargeArray<Index> places_;
+  NumberedPoints centres_;
 };
 
 /// The order of several groups, given in sequence.
-std::vector<Index> order_groups(Items points, Given given, const std::vector<Index>& groups, std::size_t block,
-                                const Execution& execution) {
-  std::vector<Index> order;
+LargeArray<Index> order_groups(Items points, Given given, std::span<const Index> groups, std::size_t block,
+                               const Execution& execution) {
+  LargeArray<Index> order;
   order.reserve(points.size() + block);
   BlockList small(block);
   for (auto begin = points.begin(); begin != points.end();) {
@@ -117,14 +116,14 @@ std::vector<Index> order_groups(Items points, Given given, const std::vector<Ind
   return order;
 }
 
-std::vector<Index> block_order(Points points, Given given, const std::vector<Index>& groups, std::size_t block,
-                               const Execution& execution) {
+LargeArray<Index> block_order(NumberedPoints points, Given given, std::span<const Index> groups, std::size_t block,
+                              const Execution& execution) {
   sort_by_group(points, groups);
   const bool is_one_group =
       groups.empty() || points.empty() || groups[at(points.front().number)] == groups[at(points.back().number)];
   if (!is_one_group) return order_groups(points, given, groups, block, execution);
   order_spatially(points, block, given, execution);
-  std::vector<Index> places;
+  LargeArray<Index> places;
   places.reserve(points.size() + block);
   append_blocks(points, block, places);
   return places;
@@ -132,13 +131,13 @@ std::vector<Index> block_order(Points points, Given given, const std::vector<Ind
 
 }  // namespace
 
-std::vector<Index> block_order(Points centres, const std::vector<Index>& groups, Index block,
-                               const Execution& execution) {
+LargeArray<Index> block_order(NumberedPoints centres, std::span<const Index> groups, Index block,
+                              const Execution& execution) {
   return block_order(std::move(centres), Given::unordered, groups, static_cast<std::size_t>(block), execution);
 }
 
-std::vector<Index> block_order_along(Points centres, const std::vector<Index>& groups, Index block,
-                                     const Execution& execution) {
+LargeArray<Index> block_order_along(NumberedPoints centres, std::span<const Index> groups, Index block,
+                                    const Execution& execution) {
   return block_order(std::move(centres), Given::in_order, groups, static_cast<std::size_t>(block), execution);
 }
 

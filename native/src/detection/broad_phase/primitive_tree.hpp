@@ -57,8 +57,8 @@ class PrimitiveTree {
 
   /// The vertices when their tree was built, for the first trees over their primitives.
   struct Curve {
-    std::vector<NumberedPoint> points;  ///< see points_at
-    std::vector<Index> places;          ///< of each vertex along a space-filling curve
+    NumberedPoints points;  ///< see points_at
+    LargeArray<Index> places;  ///< of each vertex along a space-filling curve
   };
   const Curve& curve() const { return curve_; }
   /// Frees the memory, once those trees are built.
@@ -77,15 +77,15 @@ class PrimitiveTree {
 
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
-    const std::vector<Index> bodies = bodies_of_primitives(execution);
+    const LargeArray<Index> bodies = bodies_of_primitives(execution);
     tree_.emplace(order_at(start, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
     spread_ = spread(start);
   }
 
-  std::vector<Index> order_at(const PositionsView& start, const std::vector<Index>& bodies,
+  LargeArray<Index> order_at(const PositionsView& start, std::span<const Index> bodies,
                               const Execution& execution) {
     if constexpr (size == 1) {
-      std::vector<NumberedPoint> points = points_at(start, execution);
+      NumberedPoints points = points_at(start, execution);
       if (!tree_) curve_.points = points;
       sort_along_curve(points);
       if (!tree_) curve_.places = places_of(points);
@@ -95,14 +95,14 @@ class PrimitiveTree {
       if (!vertices_ || tree_)
         return block_order(centres_of({}, points_at(start, execution), execution), bodies, Bvh::width, execution);
       const auto& [points, places] = vertices_->curve();
-      const std::vector<Index> order = order_by_corners(rows_, count_, size, places);
+      const LargeArray<Index> order = order_by_corners(rows_, count_, size, places);
       return block_order_along(centres_of(order, points, execution), bodies, Bvh::width, execution);
     }
   }
 
   /// Of all vertices, scaled so that no sum overflows; zero for vertices beyond single precision.
-  std::vector<NumberedPoint> points_at(const PositionsView& start, const Execution& execution) const {
-    std::vector<NumberedPoint> points(static_cast<std::size_t>(surface_.vertex_count()));
+  NumberedPoints points_at(const PositionsView& start, const Execution& execution) const {
+    NumberedPoints points(static_cast<std::size_t>(surface_.vertex_count()));
     execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index begin, Index end, Index) {
       for (Index vertex = begin; vertex < end; ++vertex) {
         const Eigen::Vector3f point = (start.row(vertex) - start.row(0)).template cast<float>() / 4;
@@ -113,17 +113,17 @@ class PrimitiveTree {
     return points;
   }
 
-  static std::vector<Index> places_of(const std::vector<NumberedPoint>& along_curve) {
-    std::vector<Index> places(along_curve.size());
+  static LargeArray<Index> places_of(const NumberedPoints& along_curve) {
+    LargeArray<Index> places(along_curve.size());
     for (std::size_t place = 0; place < along_curve.size(); ++place)
       places[along_curve[place].number] = static_cast<Index>(place);
     return places;
   }
 
   /// Sums of the corners of all primitives, in an order of these (empty: ascending).
-  std::vector<NumberedPoint> centres_of(const std::vector<Index>& order, const std::vector<NumberedPoint>& points,
+  NumberedPoints centres_of(std::span<const Index> order, const NumberedPoints& points,
                                         const Execution& execution) const {
-    std::vector<NumberedPoint> centres(static_cast<std::size_t>(count_));
+    NumberedPoints centres(static_cast<std::size_t>(count_));
     execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
       for (Index place = begin; place < end; ++place) {
         const Index primitive = order.empty() ? place : order[place];
@@ -139,9 +139,9 @@ class PrimitiveTree {
   }
 
   /// Empty if there is only one body.
-  std::vector<Index> bodies_of_primitives(const Execution& execution) const {
+  LargeArray<Index> bodies_of_primitives(const Execution& execution) const {
     if (surface_.bodies().size() == 1) return {};
-    std::vector<Index> bodies(count_);
+    LargeArray<Index> bodies(at(count_));
     execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
       for (Index primitive = begin; primitive < end; ++primitive)
         bodies[primitive] = surface_.body_of(row(primitive)[0]);
@@ -152,7 +152,7 @@ class PrimitiveTree {
   /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbors stay together.
   double spread(const PositionsView& start) const {
     constexpr std::size_t stride = 8;
-    const std::vector<Index>& order = tree_->order();
+    const LargeArray<Index>& order = tree_->order();
     Eigen::AlignedBox3d whole;
     double sum = 0;
     for (std::size_t first = 0; first < order.size(); first += stride * Bvh::width) {

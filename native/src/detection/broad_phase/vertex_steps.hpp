@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "large_array.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/types.hpp"
 
@@ -36,7 +37,7 @@ class VertexSteps {
  private:
   void take(const PositionsView& start, const PositionsView& end, Index row, Index vertex);
 
-  std::vector<VertexStep> rows_;
+  LargeArray<VertexStep> rows_;
 };
 
 }  // namespace stiv
