@@ -43,7 +43,7 @@ CornerList loose_vertex_corners(const Surface& surface) {
 }
 
 Primitives::Primitives(const Surface& surface, CornerList corners)
-    : corners_(std::move(corners)), changed_(surface.bodies().size(), 1) {
+    : corners_(std::move(corners)), at_rest_(surface.fixed_bodies()), changed_(surface.bodies().size(), 1) {
   bodies_.reserve(corners_.size());
   for (const auto& corner : corners_) bodies_.push_back(surface.body_of(corner[0]));
 }
@@ -58,7 +58,7 @@ void Primitives::update(std::span<const PackedBox> vertices, const Execution& ex
     execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
       for (Index k = begin; k < end; ++k) centres[at(k)] = centre_of(box_of(corners(k), vertices).bounds(), k);
     });
-    tree_.emplace(std::move(centres), bodies_, CornerRows(), execution);
+    tree_.emplace(std::move(centres), PrimitiveGroups(bodies_, at_rest_), CornerRows(), execution);
     static_assert(sizeof(corners_[0]) == 3 * sizeof(Index));
     block_corners_ = tree_->block_corners({corners_.empty() ? nullptr : corners_[0].data(), 3});
   }

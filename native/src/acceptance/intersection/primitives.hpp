@@ -44,6 +44,7 @@ class Primitives {
  private:
   CornerList corners_;
   LargeArray<Index> bodies_;
+  std::vector<unsigned char> at_rest_;  // fixed bodies
   std::vector<unsigned char> changed_;  // bodies, since the last update
   LargeArray<Index> names_;             // of corners in the tree, three for each primitive
   LargeArray<Index> block_corners_;     // vertices in the tree's order

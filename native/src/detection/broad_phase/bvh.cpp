@@ -6,8 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "detection/broad_phase/block_order.hpp"
-
 namespace stiv {
 
 namespace {
@@ -103,9 +101,9 @@ NumberedPoints centres_of(const std::vector<Bounds>& boxes) {
   return centres;
 }
 
-Bvh::Bvh(NumberedPoints centres, std::span<const Index> groups, const CornerRows& corners, const Execution& execution)
+Bvh::Bvh(NumberedPoints centres, const PrimitiveGroups& groups, const CornerRows& corners, const Execution& execution)
     : size_(static_cast<Index>(centres.size())), order_(block_order(std::move(centres), groups, width, execution)) {
-  begin(groups, corners, execution);
+  begin(groups.of_primitives, corners, execution);
 }
 
 Bvh::Bvh(LargeArray<Index> order, Index count, std::span<const Index> groups, const CornerRows& corners,

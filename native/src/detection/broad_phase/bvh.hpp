@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "detection/broad_phase/block_incidence.hpp"
+#include "detection/broad_phase/block_order.hpp"
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/group_frames.hpp"
 #include "detection/broad_phase/numbered_point.hpp"
@@ -75,7 +76,7 @@ class Bvh {
   /// a block, and subtrees of groups that do not meet are not compared.
   explicit Bvh(const std::vector<Bounds>& boxes, std::span<const Index> groups = {}, const CornerRows& corners = {});
   /// Builds over the centers of primitives; the boxes come with the first refit.
-  Bvh(NumberedPoints centres, std::span<const Index> groups, const CornerRows& corners, const Execution& execution);
+  Bvh(NumberedPoints centres, const PrimitiveGroups& groups, const CornerRows& corners, const Execution& execution);
   /// The same in a given order of all `count` primitives, as block_order returns it.
   Bvh(LargeArray<Index> order, Index count, std::span<const Index> groups, const CornerRows& corners,
       const Execution& execution);

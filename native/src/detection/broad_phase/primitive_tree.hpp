@@ -78,11 +78,12 @@ class PrimitiveTree {
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
     const LargeArray<Index> bodies = bodies_of_primitives(execution);
-    tree_.emplace(order_at(start, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
+    const std::vector<unsigned char> at_rest = surface_.fixed_bodies();
+    tree_.emplace(order_at(start, {bodies, at_rest}, execution), count_, bodies, CornerRows{rows_, size}, execution);
     spread_ = spread(start);
   }
 
-  LargeArray<Index> order_at(const PositionsView& start, std::span<const Index> bodies,
+  LargeArray<Index> order_at(const PositionsView& start, const PrimitiveGroups& bodies,
                               const Execution& execution) {
     if constexpr (size == 1) {
       NumberedPoints points = points_at(start, execution);
