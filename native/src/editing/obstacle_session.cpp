@@ -20,7 +20,7 @@ namespace {
 constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
 // If this many more ticks of a drag leave the box, the next one is prepared. That takes many free ticks, or a third of
 // them with contacts.
-constexpr double free_ticks_ahead = 18, contact_ticks_ahead = 12;
+constexpr double free_ticks_ahead = 21, contact_ticks_ahead = 12;
 
 void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
   if (surface == nullptr || deformation == nullptr) throw InputError("a surface and a deformation are needed");
@@ -158,7 +158,7 @@ class ObstacleSession final : public SessionImplementation {
                                          Execution& execution) const {
     NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     return with_scene_numbers(scene, accepted, [&] {
-      auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_in(scene),
+      auto session = make_surface_session(scene.surface, std::move(scene.obstacles), deformation_, start_, options_in(scene),
                                           accepted, goal, execution);
       return std::make_unique<NearSession>(NearSession{std::move(scene), std::move(session)});
     });
@@ -305,7 +305,8 @@ class ObstacleSession final : public SessionImplementation {
       return work();
     } catch (StartIntersectsError& error) {
       Execution execution(options_.threads);
-      SceneRows rows(scene.obstacles);
+      const Positions near = rows_of_obstacles(scene.obstacle_vertices);
+      SceneRows rows(near);
       StaticPairs found = IntersectionTest(scene.surface)
                               .find_all(rows.with_rest(deformation_->surface_in_range(controls, execution)), execution);
       found.faces = std::move(error.pairs);
@@ -314,6 +315,19 @@ class ObstacleSession final : public SessionImplementation {
       for (auto& [a, b] : found.faces) a = scene.whole_number(a), b = scene.whole_number(b);
       throw StartIntersectsError(message, std::move(found.faces));
     }
+  }
+
+  /// @param vertices numbered as if all obstacles followed the surface, ascending
+  Positions rows_of_obstacles(const std::vector<Index>& vertices) const {
+    Positions rows(static_cast<Index>(vertices.size()), 3);
+    auto obstacle = obstacles_.begin();
+    Index first = surface_->vertex_count(), row = 0;
+    for (const Index vertex : vertices) {
+      while (vertex - first >= (*obstacle)->positions().rows())
+        first += static_cast<Index>((*obstacle++)->positions().rows());
+      rows.row(row++) = (*obstacle)->positions().row(vertex - first);
+    }
+    return rows;
   }
 
   std::string describe_face(Index face, const NearScene& scene) const {

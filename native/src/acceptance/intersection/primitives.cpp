@@ -10,11 +10,14 @@ namespace {
 
 constexpr Index chunk_size = 4096;
 
-PackedBox box_of(const std::array<Index, 3>& corners, std::span<const PackedBox> vertices) {
-  PackedBox box = vertices[at(corners[0])];
-  box.include(vertices[at(corners[1])]);
-  box.include(vertices[at(corners[2])]);
-  return box;
+/// The sum of the corners' boxes, scaled so that it does not overflow.
+NumberedPoint centre_of(const std::array<Index, 3>& corners, std::span<const PackedBox> vertices, Index number) {
+  NumberedPoint centre{{0, 0, 0}, number};
+  for (const Index corner : corners) {
+    const auto& values = vertices[at(corner)].values;
+    for (std::size_t axis = 0; axis < 3; ++axis) centre.position[axis] += (values[axis] - values[axis + 3]) / 8;
+  }
+  return centre;
 }
 
 }  // namespace
@@ -56,7 +59,7 @@ void Primitives::update(std::span<const PackedBox> vertices, const Execution& ex
   if (!tree_) {
     NumberedPoints centres(corners_.size());
     execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
-      for (Index k = begin; k < end; ++k) centres[at(k)] = centre_of(box_of(corners(k), vertices).bounds(), k);
+      for (Index k = begin; k < end; ++k) centres[at(k)] = centre_of(corners(k), vertices, k);
     });
     tree_.emplace(std::move(centres), PrimitiveGroups(bodies_, at_rest_), CornerRows(), execution);
     static_assert(sizeof(corners_[0]) == 3 * sizeof(Index));
@@ -66,21 +69,23 @@ void Primitives::update(std::span<const PackedBox> vertices, const Execution& ex
   std::fill(changed_.begin(), changed_.end(), 0);
 }
 
-// The tree skips pairs of primitives with equal corner names. Corners whose star is not proven free get unique negative
+// The tree skips pairs of primitives with equal corner names. Those at rest need none: no pair among them is compared. Corners whose star is not proven free get unique negative
 // names.
 void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars,
                                       const std::vector<unsigned char>& changed, const Execution& execution) {
+  std::vector<unsigned char> named = changed;
+  for (std::size_t body = 0; body < named.size(); ++body) named[body] &= static_cast<unsigned char>(at_rest_[body] == 0);
   names_.resize(3 * corners_.size());
   execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index primitive = begin; primitive < end; ++primitive) {
-      if (changed[at(bodies_[at(primitive)])] == 0) continue;
+      if (named[at(bodies_[at(primitive)])] == 0) continue;
       for (Index k = 3 * primitive; k < 3 * (primitive + 1); ++k) {
         const Index vertex = corners_[at(primitive)][at(k % 3)];
         names_[at(k)] = free_stars[at(vertex)] ? vertex : -2 - k;
       }
     }
   });
-  tree_->set_corners({names_.data(), 3}, changed, execution);
+  tree_->set_corners({names_.data(), 3}, named, execution);
 }
 
 }  // namespace stiv

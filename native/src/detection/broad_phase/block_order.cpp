@@ -25,15 +25,11 @@ constexpr std::size_t large_group = 3 << 14;
 
 enum class Given { unordered, in_order };
 
-/// An order along a curve alone is nearly as close, and takes a fraction of the time.
-enum class Closeness { of_curve, of_splits };
-
 /// A curve, or an order that is known already, replaces the first levels of median splits, which cost the most and
 /// matter the least.
-void order_spatially(Items items, std::size_t run, Given given, Closeness closeness, const Execution& execution) {
+void order_spatially(Items items, std::size_t run, Given given, const Execution& execution) {
   const std::size_t window = given == Given::in_order ? known_window_size : window_size;
   if (given == Given::unordered && items.size() > window) sort_along_curve(items);
-  if (closeness == Closeness::of_curve && items.size() > window) return;
   execution.for_chunks(static_cast<Index>(items.size()), window_size, [&](Index begin, Index end, Index) {
     for (auto first = static_cast<std::size_t>(begin), last = static_cast<std::size_t>(end); first < last;
          first += window)
@@ -80,7 +76,7 @@ class BlockList {
 
   /// Appends the places of the blocks in a spatial order.
   void append_ordered(const Execution& execution, LargeArray<Index>& order) {
-    order_spatially(centres_, block_, Given::unordered, Closeness::of_splits, execution);
+    order_spatially(centres_, block_, Given::unordered, execution);
     for (const NumberedPoint& centre : centres_) {
       const auto first = places_.begin() + static_cast<std::ptrdiff_t>(block_) * centre.number;
       order.insert(order.end(), first, first + static_cast<std::ptrdiff_t>(block_));
@@ -100,7 +96,8 @@ class BlockList {
   NumberedPoints centres_;
 };
 
-/// The order of several groups, given in sequence.
+/// The order of several groups, given in sequence. A curve alone orders large ones at rest: nearly as closely, in a
+/// fraction of the time.
 LargeArray<Index> order_groups(Items points, Given given, const PrimitiveGroups& groups, std::size_t block,
                                const Execution& execution) {
   LargeArray<Index> order;
@@ -111,11 +108,16 @@ LargeArray<Index> order_groups(Items points, Given given, const PrimitiveGroups&
       return groups.of_primitives[at(point.number)] != groups.of_primitives[at(begin->number)];
     });
     const Items group(begin, end);
-    const bool rests = groups.rests(groups.of_primitives[at(begin->number)]);
-    order_spatially(group, block, given, rests ? Closeness::of_curve : Closeness::of_splits, execution);
-    BlockList large(block);
-    (group.size() < large_group ? small : large).add(group);
-    large.append_ordered(execution, order);
+    const bool is_large = group.size() >= large_group;
+    if (is_large && groups.rests(groups.of_primitives[at(begin->number)])) {
+      if (given == Given::unordered) sort_along_curve(group);
+      append_blocks(group, block, order);
+    } else {
+      order_spatially(group, block, given, execution);
+      BlockList large(block);
+      (is_large ? large : small).add(group);
+      large.append_ordered(execution, order);
+    }
     begin = end;
   }
   small.append_ordered(execution, order);
@@ -129,7 +131,7 @@ LargeArray<Index> block_order(NumberedPoints points, Given given, const Primitiv
   const bool is_one_group = of_primitives.empty() || points.empty() ||
                             of_primitives[at(points.front().number)] == of_primitives[at(points.back().number)];
   if (!is_one_group) return order_groups(points, given, groups, block, execution);
-  order_spatially(points, block, given, Closeness::of_splits, execution);
+  order_spatially(points, block, given, execution);
   LargeArray<Index> places;
   places.reserve(points.size() + block);
   append_blocks(points, block, places);

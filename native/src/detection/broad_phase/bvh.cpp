@@ -143,10 +143,15 @@ void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char
                       const Execution& execution) {
   corner_size_ = corners.size;
   incidence_.reset();
-  corners_.resize(order_.size() * static_cast<std::size_t>(corners.size));
+  const std::size_t block_size = static_cast<std::size_t>(corners.size) * width;
+  const bool are_new = corners_.size() != order_.size() / width * block_size;
+  corners_.resize(order_.size() / width * block_size);
   execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
     for (Index block = begin; block < end; ++block)
-      if (changed[levels_[0].groups[block]] != 0) list_corners(corners, block, corners_);
+      if (changed[levels_[0].groups[block]] != 0)
+        list_corners(corners, block, corners_);
+      else if (are_new)
+        std::fill_n(corners_.begin() + static_cast<std::ptrdiff_t>(block_size) * block, block_size, -1);
   });
 }
 

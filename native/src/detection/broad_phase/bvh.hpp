@@ -105,7 +105,8 @@ class Bvh {
   void refit_groups_corners(const std::vector<unsigned char>& changed, std::span<const Index> block_corners,
                             std::span<const PackedBox> vertices, const Execution& execution);
 
-  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
+  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones, or
+  /// none if there were none before.
   void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
 
   /// Two subtrees to compare: a unit of work.

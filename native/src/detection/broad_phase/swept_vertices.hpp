@@ -105,7 +105,7 @@ class SweptVertices {
   Index resting_ = 0;  ///< vertices
   Frame frame_;
   FrameMotions motions_;
-  Positions start_, end_;  // of the step for which each box was computed
+  Positions start_, end_;  // of the step for which each box was computed, of the vertices that may change
   LargeArray<PackedBox> boxes_;
   LargeArray<CoarseStep> coarse_steps_;
   CoarseFrame coarse_frame_;
