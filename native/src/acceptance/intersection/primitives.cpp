@@ -23,9 +23,10 @@ NumberedPoint centre_of(const std::array<Index, 3>& corners, std::span<const Pac
 }  // namespace
 
 CornerList triangle_corners(const Surface& surface) {
-  CornerList corners;
-  corners.reserve(static_cast<std::size_t>(surface.triangles().rows()));
-  for (const auto& row : surface.triangles().rowwise()) corners.push_back({row[0], row[1], row[2]});
+  static_assert(sizeof(CornerList::value_type) == 3 * sizeof(Index));
+  CornerList corners(at(surface.triangles().rows()));
+  const Index* const first = surface.triangles().data();
+  if (!corners.empty()) std::copy(first, first + surface.triangles().size(), corners[0].data());
   return corners;
 }
 
@@ -37,8 +38,8 @@ CornerList loose_edge_corners(const Surface& surface) {
 
 CornerList loose_vertex_corners(const Surface& surface) {
   std::vector<unsigned char> used(at(surface.vertex_count()), 0);
-  for (const Index vertex : surface.triangles().reshaped()) used[at(vertex)] = 1;
-  for (const Index vertex : surface.loose_edges().reshaped()) used[at(vertex)] = 1;
+  for (const Index vertex : surface.triangles().reshaped<Eigen::RowMajor>()) used[at(vertex)] = 1;
+  for (const Index vertex : surface.loose_edges().reshaped<Eigen::RowMajor>()) used[at(vertex)] = 1;
   CornerList corners;
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
     if (!used[at(vertex)]) corners.push_back({vertex, vertex, vertex});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -31,12 +30,12 @@ class BlockIncidence {
   }
 
  private:
-  /// Are all vertices of a block beyond the first ones? Compilers turn this into vector code.
+  /// Is no vertex of a block among the first ones? Compilers turn this into vector code.
   bool is_unlisted(std::span<const Index> corners) const {
-    const auto count = static_cast<std::uint32_t>(first_.size() - 1);
-    bool is_any = false;
-    for (const Index corner : corners) is_any |= static_cast<std::uint32_t>(corner) < count;
-    return !is_any;
+    const auto count = static_cast<Index>(first_.size() - 1);
+    Index signs = 0;
+    for (const Index corner : corners) signs |= (corner - count) & ~corner;
+    return signs >= 0;
   }
 
   template <class Visit>
