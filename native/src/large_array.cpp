@@ -11,7 +11,7 @@ namespace stiv {
 namespace {
 
 constexpr std::size_t alignment = 64;
-constexpr std::size_t least_kept = 1 << 15;         // bytes of a block
+constexpr std::size_t least_kept = 1 << 15;              // bytes of a block
 constexpr std::size_t most_kept = std::size_t{3} << 27;  // of all blocks
 
 /// Before the memory of each array.
@@ -79,7 +79,7 @@ class KeptBlocks {
     }
   }
 
-  static void release(void* block) noexcept { ::operator delete(block, std::align_val_t{alignment}); }
+  static void release(void* block) noexcept { ::operator delete (block, std::align_val_t{alignment}); }
 
  private:
   std::mutex mutex_;
@@ -97,7 +97,7 @@ std::size_t MemoryReuse::kept_bytes() { return KeptBlocks::all().bytes(); }
 void* allocate_large(std::size_t bytes) {
   const std::size_t size = rounded(bytes + sizeof(Header));
   void* block = size < least_kept ? nullptr : KeptBlocks::all().take(size);
-  if (block == nullptr) block = new (::operator new(size, std::align_val_t{alignment})) Header{size};
+  if (block == nullptr) block = new (::operator new (size, std::align_val_t{alignment})) Header{size};
   return static_cast<Header*>(block) + 1;
 }
 

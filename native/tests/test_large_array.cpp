@@ -40,9 +40,7 @@ TEST_CASE("large array: freed memory is used again, until no one keeps it") {
     const MemoryReuse reuse;
     const Index* const memory = LargeArray<Index>(large).data();
     CHECK(MemoryReuse::kept_bytes() >= large * sizeof(Index));
-    {
-      const MemoryReuse other;
-    }
+    { const MemoryReuse other; }
     const LargeArray<Index> next(large - large / 20);
     CHECK(next.data() == memory);
     CHECK(MemoryReuse::kept_bytes() == 0);
@@ -70,9 +68,7 @@ TEST_CASE("large array: small arrays are not kept, nor are blocks far larger tha
 TEST_CASE("large array: what is kept has a limit") {
   const MemoryReuse reuse;
   constexpr std::size_t count = std::size_t{1} << 26;  // 256 MB, which no one writes
-  {
-    const LargeArray<Index> first(count), second(count);
-  }
+  { const LargeArray<Index> first(count), second(count); }
   CHECK(MemoryReuse::kept_bytes() < 2 * count * sizeof(Index));
   CHECK(MemoryReuse::kept_bytes() >= count * sizeof(Index));
 }

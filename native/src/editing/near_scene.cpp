@@ -12,7 +12,7 @@ namespace {
 /// Vertices of some triangles, ascending, and their places in this list.
 struct UsedVertices {
   std::vector<Index> vertices;
-  Index first = 0;                   ///< vertex
+  Index first = 0;                    ///< vertex
   std::unique_ptr<Index[]> places{};  ///< from the first to the last vertex; of those that are not used, undefined
 };
 

@@ -158,8 +158,8 @@ class ObstacleSession final : public SessionImplementation {
                                          Execution& execution) const {
     NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     return with_scene_numbers(scene, accepted, [&] {
-      auto session = make_surface_session(scene.surface, std::move(scene.obstacles), deformation_, start_, options_in(scene),
-                                          accepted, goal, execution);
+      auto session = make_surface_session(scene.surface, std::move(scene.obstacles), deformation_, start_,
+                                          options_in(scene), accepted, goal, execution);
       return std::make_unique<NearSession>(NearSession{std::move(scene), std::move(session)});
     });
   }
@@ -228,8 +228,8 @@ class ObstacleSession final : public SessionImplementation {
     const Eigen::AlignedBox3d box = around(now);
     if (!contains(box, after(now, ticks_ahead), margin())) return;  // a motion so fast would leave it at once
     next_.emplace(box, threads,
-                  [this, box, accepted = controls(), goal = goal_, previous = std::move(previous_)](
-                      Execution& execution) mutable {
+                  [this, box, accepted = controls(), goal = goal_,
+                   previous = std::move(previous_)](Execution& execution) mutable {
                     previous.reset();
                     return make_near(box, accepted, goal, execution);
                   });
@@ -350,10 +350,10 @@ class ObstacleSession final : public SessionImplementation {
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
   Eigen::AlignedBox3d bounds_;        ///< of the accepted surface
   Eigen::AlignedBox3d box_;
-  std::optional<MemoryReuse> reuse_ = std::make_optional<MemoryReuse>();  ///< from one box to the next, until a drag ends
+  std::optional<MemoryReuse> reuse_;  ///< from one box to the next, until a drag ends
   std::unique_ptr<NearSession> near_;
   std::shared_ptr<NearSession> previous_;  ///< in the last box; freed by the thread that prepares the next one
-  std::optional<NextSession> next_;  ///< last: its thread refers to the other members
+  std::optional<NextSession> next_;        ///< last: its thread refers to the other members
 };
 
 }  // namespace

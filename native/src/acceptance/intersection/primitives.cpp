@@ -70,12 +70,13 @@ void Primitives::update(std::span<const PackedBox> vertices, const Execution& ex
   std::fill(changed_.begin(), changed_.end(), 0);
 }
 
-// The tree skips pairs of primitives with equal corner names. Those at rest need none: no pair among them is compared. Corners whose star is not proven free get unique negative
-// names.
+// The tree skips pairs of primitives with equal corner names. Those at rest need none: no pair among them is compared.
+// Corners whose star is not proven free get unique negative names.
 void Primitives::leave_out_neighbours(const std::vector<unsigned char>& free_stars,
                                       const std::vector<unsigned char>& changed, const Execution& execution) {
   std::vector<unsigned char> named = changed;
-  for (std::size_t body = 0; body < named.size(); ++body) named[body] &= static_cast<unsigned char>(at_rest_[body] == 0);
+  for (std::size_t body = 0; body < named.size(); ++body)
+    named[body] &= static_cast<unsigned char>(at_rest_[body] == 0);
   names_.resize(3 * corners_.size());
   execution.for_chunks(static_cast<Index>(corners_.size()), chunk_size, [&](Index begin, Index end, Index) {
     for (Index primitive = begin; primitive < end; ++primitive) {

@@ -21,8 +21,7 @@ struct LinkEdgeTable {
   std::vector<std::size_t> start;
   std::vector<LinkEdge> edges;
 
-  LinkEdgeTable(std::span<const std::array<Index, 3>> triangles, Index vertex_count)
-      : start(at(vertex_count) + 2, 0) {
+  LinkEdgeTable(std::span<const std::array<Index, 3>> triangles, Index vertex_count) : start(at(vertex_count) + 2, 0) {
     for (const auto& corners : triangles)
       for (const Index corner : corners) ++start[at(corner) + 2];
     for (std::size_t k = 2; k < start.size(); ++k) start[k] += start[k - 1];

@@ -167,7 +167,7 @@ class Bvh {
   static constexpr Index chunk_size = 512;
 
   Index size_ = 0;
-  LargeArray<Index> order_;   // primitive of each place in the blocks, -1: none
+  LargeArray<Index> order_;    // primitive of each place in the blocks, -1: none
   std::vector<Level> levels_;  // blocks first, the root last
   LargeArray<Index> corners_;
   Index corner_size_ = 0;

@@ -57,7 +57,7 @@ class PrimitiveTree {
 
   /// The vertices when their tree was built, for the first trees over their primitives.
   struct Curve {
-    NumberedPoints points;  ///< see points_at
+    NumberedPoints points;     ///< see points_at
     LargeArray<Index> places;  ///< of each vertex along a space-filling curve
   };
   const Curve& curve() const { return curve_; }
@@ -83,8 +83,7 @@ class PrimitiveTree {
     spread_ = spread(start);
   }
 
-  LargeArray<Index> order_at(const PositionsView& start, const PrimitiveGroups& bodies,
-                              const Execution& execution) {
+  LargeArray<Index> order_at(const PositionsView& start, const PrimitiveGroups& bodies, const Execution& execution) {
     if constexpr (size == 1) {
       NumberedPoints points = points_at(start, execution);
       if (!tree_) curve_.points = points;
@@ -123,7 +122,7 @@ class PrimitiveTree {
 
   /// Sums of the corners of all primitives, in an order of these (empty: ascending).
   NumberedPoints centres_of(std::span<const Index> order, const NumberedPoints& points,
-                                        const Execution& execution) const {
+                            const Execution& execution) const {
     NumberedPoints centres(static_cast<std::size_t>(count_));
     execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
       for (Index place = begin; place < end; ++place) {
