@@ -55,7 +55,7 @@ TEST_CASE("large array: freed memory is used again, until no one keeps it") {
   CHECK(MemoryReuse::kept_bytes() == 0);
 }
 
-TEST_CASE("large array: small arrays are not kept, nor are blocks far larger than needed used for others") {
+TEST_CASE("large array: small arrays are not kept, and blocks far larger than needed are not used") {
   const MemoryReuse reuse;
   LargeArray<Index>{}.resize(100);
   CHECK(MemoryReuse::kept_bytes() == 0);
@@ -65,7 +65,7 @@ TEST_CASE("large array: small arrays are not kept, nor are blocks far larger tha
   CHECK(MemoryReuse::kept_bytes() == kept);
 }
 
-TEST_CASE("large array: what is kept has a limit") {
+TEST_CASE("large array: the kept memory has a limit") {
   const MemoryReuse reuse;
   constexpr std::size_t count = std::size_t{1} << 26;  // 256 MB, which no one writes
   { const LargeArray<Index> first(count), second(count); }

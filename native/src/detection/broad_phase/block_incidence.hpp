@@ -30,7 +30,7 @@ class BlockIncidence {
   }
 
  private:
-  /// Is no vertex of a block among the first ones? Compilers turn this into vector code.
+  /// Are all vertices of a block beyond the first ones? Compilers turn this into vector code.
   bool is_unlisted(std::span<const Index> corners) const {
     const auto count = static_cast<Index>(first_.size() - 1);
     Index signs = 0;
