@@ -44,7 +44,7 @@ void sort_by_group(NumberedPoints& points, std::span<const Index> groups) {
   };
   if (groups.empty() || std::is_sorted(points.begin(), points.end(), before)) return;
   std::vector<std::size_t> starts(static_cast<std::size_t>(*std::max_element(groups.begin(), groups.end())) + 1, 0);
-  for (const Index group : groups) ++starts[group];
+  for (const NumberedPoint& point : points) ++starts[groups[point.number]];
   std::size_t sum = 0;
   for (std::size_t& start : starts) sum += std::exchange(start, sum);
   NumberedPoints sorted(points.size());
@@ -148,6 +148,31 @@ LargeArray<Index> block_order(NumberedPoints centres, const PrimitiveGroups& gro
 LargeArray<Index> block_order_along(NumberedPoints centres, const PrimitiveGroups& groups, Index block,
                                     const Execution& execution) {
   return block_order(std::move(centres), Given::in_order, groups, static_cast<std::size_t>(block), execution);
+}
+
+DividedOrder divide_order(std::span<const Index> order, const PrimitiveGroups& groups, Index block) {
+  std::vector<std::size_t> counts(groups.at_rest.size(), 0);
+  for (const Index group : groups.of_primitives)
+    if (groups.rests(group)) ++counts[at(group)];
+  constexpr auto none = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> places(counts.size(), none);  // of the next primitive of each large group
+  std::size_t end = 0, resting = 0;
+  for (std::size_t group = 0; group < counts.size(); ++group) {
+    if (counts[group] < large_group) continue;
+    places[group] = end;
+    resting += counts[group];
+    end += (counts[group] + at(block) - 1) / at(block) * at(block);
+  }
+  DividedOrder divided{LargeArray<Index>(end, -1), {}};
+  divided.others.reserve(order.size() - resting);
+  for (const Index primitive : order) {
+    std::size_t* const place = end > 0 ? &places[at(groups.of_primitives[at(primitive)])] : nullptr;
+    if (place != nullptr && *place != none)
+      divided.resting_blocks[(*place)++] = primitive;
+    else
+      divided.others.push_back(primitive);
+  }
+  return divided;
 }
 
 }  // namespace stiv

@@ -33,4 +33,13 @@ LargeArray<Index> block_order(NumberedPoints centres, const PrimitiveGroups& gro
 LargeArray<Index> block_order_along(NumberedPoints centres, const PrimitiveGroups& groups, Index block,
                                     const Execution& execution);
 
+/// The primitives of large groups at rest, in blocks of their own, and the others. Both keep a given order.
+struct DividedOrder {
+  LargeArray<Index> resting_blocks;
+  LargeArray<Index> others;
+};
+
+/// For primitives along a curve: that is close enough for groups at rest, which then need no centers.
+DividedOrder divide_order(std::span<const Index> order, const PrimitiveGroups& groups, Index block);
+
 }  // namespace stiv

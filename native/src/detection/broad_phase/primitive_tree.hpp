@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -93,10 +94,13 @@ class PrimitiveTree {
     } else {
       // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
       if (!vertices_ || tree_)
-        return block_order(centres_of({}, points_at(start, execution), execution), bodies, Bvh::width, execution);
+        return block_order(centres_of(all(), points_at(start, execution), execution), bodies, Bvh::width, execution);
       const auto& [points, places] = vertices_->curve();
-      const LargeArray<Index> order = order_by_corners(rows_, count_, size, places);
-      return block_order_along(centres_of(order, points, execution), bodies, Bvh::width, execution);
+      const auto [resting, others] = divide_order(order_by_corners(rows_, count_, size, places), bodies, Bvh::width);
+      LargeArray<Index> blocks =
+          block_order_along(centres_of(others, points, execution), bodies, Bvh::width, execution);
+      blocks.insert(blocks.end(), resting.begin(), resting.end());
+      return blocks;
     }
   }
 
@@ -120,13 +124,19 @@ class PrimitiveTree {
     return places;
   }
 
-  /// Sums of the corners of all primitives, in an order of these (empty: ascending).
-  NumberedPoints centres_of(std::span<const Index> order, const NumberedPoints& points,
+  LargeArray<Index> all() const {
+    LargeArray<Index> all(at(count_));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
+  /// Sums of the corners of some primitives.
+  NumberedPoints centres_of(std::span<const Index> primitives, const NumberedPoints& points,
                             const Execution& execution) const {
-    NumberedPoints centres(static_cast<std::size_t>(count_));
-    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
+    NumberedPoints centres(primitives.size());
+    execution.for_chunks(static_cast<Index>(primitives.size()), chunk_size, [&](Index begin, Index end, Index) {
       for (Index place = begin; place < end; ++place) {
-        const Index primitive = order.empty() ? place : order[place];
+        const Index primitive = primitives[at(place)];
         const auto corners = row(primitive);
         NumberedPoint centre = points[corners[0]];
         for (std::size_t k = 1; k < static_cast<std::size_t>(size); ++k)

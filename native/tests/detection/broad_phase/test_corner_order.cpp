@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numeric>
 #include <random>
 
@@ -147,4 +148,24 @@ TEST_CASE("block order: large groups at rest are ordered along a curve, nearly a
     CHECK(sum(resting, 0) == sum(with_splits, 0));
     CHECK(sum(resting, 1) < 1.3F * sum(with_splits, 1));
   }
+}
+
+TEST_CASE("divided order: large groups at rest have blocks of their own, and all keep the given order") {
+  constexpr Index large = (3 << 14) + 1, small = 100, count = 2 * large + 2 * small;
+  std::vector<Index> order(at(count)), groups;
+  std::iota(order.begin(), order.end(), 0);
+  std::shuffle(order.begin(), order.end(), std::mt19937(8));
+  for (Index k = 0; k < count; ++k) groups.push_back(k % 2 + (k < 2 * large ? 0 : 2));
+  LargeArray<Index> resting, others, all(order.begin(), order.end());
+  for (const Index group : {0, 1}) {
+    std::ranges::copy_if(order, std::back_inserter(resting), [&](Index k) { return groups[at(k)] == group; });
+    resting.resize((resting.size() + 7) / 8 * 8, -1);
+  }
+  std::ranges::copy_if(order, std::back_inserter(others), [&](Index k) { return groups[at(k)] > 1; });
+  const std::vector<unsigned char> at_rest{1, 1, 0, 1};  // the last one is small
+  const DividedOrder divided = divide_order(order, PrimitiveGroups(groups, at_rest), 8);
+  CHECK(divided.resting_blocks == resting);
+  CHECK(divided.others == others);
+  CHECK(divide_order(order, PrimitiveGroups(groups), 8).others == all);
+  CHECK(divide_order(order, {}, 8).others == all);
 }
