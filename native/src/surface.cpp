@@ -180,6 +180,12 @@ Surface::Surface(SurfaceDefinition definition) : definition_(std::move(definitio
   connect(edges_, vertex_count(), neighbour_start_, neighbours_);
 }
 
+std::vector<unsigned char> Surface::fixed_bodies() const {
+  std::vector<unsigned char> fixed;
+  for (const Body& body : bodies()) fixed.push_back(body.mobility == Mobility::fixed);
+  return fixed;
+}
+
 bool Surface::in_one_flip_face(const Index* vertices, std::size_t count) const {
   const auto faces_of = [&](Index vertex) -> const std::vector<Index>& { return flip_faces_[vertex]; };
   for (const Index face : faces_of(vertices[0])) {
@@ -198,12 +204,12 @@ Eigen::VectorXd Surface::vertex_areas(const PositionsView& q) const {
 }
 
 void Surface::add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas,
-                               const Execution& execution) const {
+                               const Execution& execution, Index first_row) const {
   constexpr Index chunk_size = 4096;
   Eigen::VectorXd thirds(end - first);
   execution.for_chunks(end - first, chunk_size, [&](Index begin, Index last, Index) {
     for (Index k = begin; k < last; ++k) {
-      const auto corner = [&](Index c) -> Vector3 { return q.row(triangles()(first + k, c)); };
+      const auto corner = [&](Index c) -> Vector3 { return q.row(triangles()(first + k, c) - first_row); };
       thirds[k] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm() / 6;
     }
   });

@@ -57,6 +57,9 @@ class Surface {
     return bodies()[static_cast<std::size_t>(body_of(vertex))].mobility == Mobility::fixed;
   }
 
+  /// 1 for each body that never moves.
+  std::vector<unsigned char> fixed_bodies() const;
+
   /// True if primitives of these two bodies are tested against each other.
   bool bodies_meet(Index a, Index b) const {
     return meets_[static_cast<std::size_t>(a) * definition_.bodies.size() + static_cast<std::size_t>(b)] != 0;
@@ -78,8 +81,9 @@ class Surface {
   /// The barycentric area of each vertex, (N), at positions q: a third of the adjacent triangles' areas. [P4, Eq. 3]
   Eigen::VectorXd vertex_areas(const PositionsView& q) const;
   /// Adds what the triangles [first, end) contribute to them, in order.
+  /// @param first_row the vertex of the first row of q
   void add_vertex_areas(const PositionsView& q, Index first, Index end, Eigen::VectorXd& areas,
-                        const Execution& execution) const;
+                        const Execution& execution, Index first_row = 0) const;
 
   /// The name of a vertex in messages: object "X", vertex 12, numbered within its body.
   std::string describe_vertex(Index vertex) const;

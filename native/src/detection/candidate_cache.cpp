@@ -58,10 +58,10 @@ void CandidateCache::prune(const PositionsView& start, const PositionsView& end,
                            const Execution& execution) {
   search_.check_step({start, end, proximity});
   const FloatingPointScope floating_point;
-  const auto count = static_cast<Index>(start.rows());
-  steps_.update_first(has_resting_steps_ ? count - resting_ : count, start, end, execution);
-  has_resting_steps_ = true;
   const ClosePairs searched = search_.take_close_pairs(execution);
+  steps_.update_first(static_cast<Index>(start.rows()) - resting_, start, end, execution);
+  take_resting_steps(pairs_, start);
+  take_resting_steps(searched, start);
   const FrameMotions motions = search_.frame_motions(start, end);
   ClosePairs kept, added;
   execution.for_chunks(4, 1, [&](Index, Index, Index number) {
@@ -104,6 +104,15 @@ void CandidateCache::replace(ClosePairs pairs) {
   vertices_.clear();
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
     if (listed[vertex] != 0) vertices_.push_back(vertex);
+}
+
+/// Only of the vertices of pairs: there are far fewer than resting ones.
+void CandidateCache::take_resting_steps(const ClosePairs& pairs, const PositionsView& positions) {
+  const Index first = search_.surface().vertex_count() - resting_;
+  for (std::size_t kind = 0; resting_ > 0 && kind < pairs.size(); ++kind)
+    for (const Candidate& pair : pairs[kind])
+      for (const Index vertex : vertices_of(search_.surface(), kinds[kind], pair))
+        if (vertex >= first) steps_.update_one(vertex, positions);
 }
 
 void CandidateCache::take_rows(const Rows& rows, const Execution& execution) {

@@ -54,6 +54,7 @@ class CandidateCache {
  private:
   void add_last_search(const Execution& execution);
   void replace(ClosePairs pairs);
+  void take_resting_steps(const ClosePairs& pairs, const PositionsView& positions);
   void take_rows(const Rows& rows, const Execution& execution);
 
   PairSearch& search_;
@@ -61,7 +62,6 @@ class CandidateCache {
   std::vector<Index> vertices_;  ///< of all pairs, ascending
   VertexSteps steps_;
   Index resting_;
-  bool has_resting_steps_ = false;  ///< of all resting vertices
 };
 
 }  // namespace stiv

@@ -69,7 +69,7 @@ CollisionQueries::CollisionQueries(const EditContext& context)
 
 void CollisionQueries::check_start(const Positions& surface, Execution& execution) {
   const ScopedTimer timer(execution.timings.acceptance);
-  const Positions& q = start_.with_rest(surface);
+  const Positions& q = end_.with_rest(surface);
   const bool is_first = overlap_ && !overlap_->begun();
   if (is_first) overlap_->begin(q, execution);
   if (overlap_ && !is_first && overlap_->is_deeper(q, execution))
@@ -89,7 +89,6 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
 void CollisionQueries::prepare_searches(const Positions& surface, Execution& execution) {
   guard_->detector.prepare(context_.centred(surface, centred_start_, execution), context_.round_proximity(), execution);
   if (context_.obstacles().rows() == 0) return;
-  end_.with_rest(surface);
   prune_cache(surface, surface, execution);
 }
 

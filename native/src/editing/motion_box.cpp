@@ -10,7 +10,7 @@ namespace stiv {
 namespace {
 
 constexpr std::array margins{1.0, 0.5, 0.25, 0.125};  // in diagonals of the bounds
-constexpr double margins_around = 2;                  // of them on each side if no motion is known
+constexpr double margins_around = 2.25;               // of them on each side if no motion is known
 constexpr double margins_aside = 0.25;                // of them beside the motion
 constexpr double margins_ahead = 5;                   // more of them along it
 constexpr Index few_triangles = 1 << 16;              // near ones, few for a session

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "editing/scene_rows.hpp"
 #include "stiv/volumes/relative.hpp"
 
 namespace stiv {
@@ -69,14 +68,22 @@ const Eigen::VectorXd& MovingPart::region_areas(const Positions& q, const Execut
   return areas_;
 }
 
+/// Of the first vertices; the triangles of obstacles follow.
+Index MovingPart::count_of_triangles(Index vertices) const {
+  const auto triangles = surface_->triangles().col(0);
+  auto count = static_cast<Index>(triangles.size());
+  while (obstacles_.rows() > 0 && count > triangles_.end && triangles[count - 1] >= vertices) --count;
+  return count;
+}
+
 /// Areas that the triangles of the other part give to all vertices.
 void MovingPart::compute_rest(const Positions& q, const Execution& execution) const {
   areas_of_rest_ = Eigen::VectorXd::Zero(surface_->vertex_count());
-  SceneRows rows(obstacles_);
-  const Positions& whole = rows.with_rest(q);
-  const auto end = static_cast<Index>(surface_->triangles().rows());
-  surface_->add_vertex_areas(whole, 0, triangles_.first, areas_of_rest_, execution);
-  surface_->add_vertex_areas(whole, triangles_.end, end, areas_of_rest_, execution);
+  const auto own_vertices = static_cast<Index>(q.rows()), own = count_of_triangles(own_vertices);
+  surface_->add_vertex_areas(q, 0, triangles_.first, areas_of_rest_, execution);
+  surface_->add_vertex_areas(q, triangles_.end, own, areas_of_rest_, execution);
+  const auto all = static_cast<Index>(surface_->triangles().rows());
+  surface_->add_vertex_areas(obstacles_, own, all, areas_of_rest_, execution, own_vertices);
   rest_is_complete_ = (areas_of_rest_.head(corners_.first).array() > 0).all() &&
                       (areas_of_rest_.tail(areas_of_rest_.size() - corners_.end).array() > 0).all();
 }

@@ -33,6 +33,7 @@ class MovingPart {
     void cover(Index element);
   };
 
+  Index count_of_triangles(Index vertices) const;
   void compute_rest(const Positions& q, const Execution& execution) const;
 
   std::shared_ptr<const Surface> surface_;

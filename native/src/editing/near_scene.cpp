@@ -9,10 +9,11 @@ namespace stiv {
 
 namespace {
 
-/// Vertices of some triangles, ascending, and the triangles with places in this list as corners.
+/// Vertices of some triangles, ascending, and their places in this list.
 struct UsedVertices {
   std::vector<Index> vertices;
-  Triangles triangles;
+  Index first = 0;                    ///< vertex
+  std::unique_ptr<Index[]> places{};  ///< from the first to the last vertex; of those that are not used, undefined
 };
 
 /// The least and the greatest vertex of some triangles, of which there is at least one.
@@ -28,7 +29,6 @@ std::pair<Index, Index> vertex_range(const Obstacle& obstacle, const std::vector
 
 UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& triangles) {
   UsedVertices used;
-  used.triangles.resize(static_cast<Index>(triangles.size()), 3);
   if (triangles.empty()) return used;
   const auto [first, last] = vertex_range(obstacle, triangles);
   const auto count = at(last - first) + 1;
@@ -37,15 +37,13 @@ UsedVertices used_vertices(const Obstacle& obstacle, const std::vector<Index>& t
     for (const Index corner : obstacle.triangles().row(triangle)) marks[at(corner - first)] = 1;
   used.vertices.reserve(at(std::count(marks.begin(), marks.end(), 1)));
   // Written only where a vertex is used, so that the memory of the others is never touched.
-  const std::unique_ptr<Index[]> places(new Index[count]);
+  used.first = first;
+  used.places.reset(new Index[count]);
   for (std::size_t k = 0; k < count; ++k) {
     if (marks[k] == 0) continue;
-    places[k] = static_cast<Index>(used.vertices.size());
+    used.places[k] = static_cast<Index>(used.vertices.size());
     used.vertices.push_back(first + static_cast<Index>(k));
   }
-  for (std::size_t row = 0; row < triangles.size(); ++row)
-    for (Index k = 0; k < 3; ++k)
-      used.triangles(static_cast<Index>(row), k) = places[at(obstacle.triangles()(triangles[row], k) - first)];
   return used;
 }
 
@@ -79,7 +77,7 @@ class NearSceneBuilder {
  private:
   void append(const Obstacle& obstacle, const std::vector<Index>& near) {
     const UsedVertices used = used_vertices(obstacle, near);
-    append_triangles(used.triangles);
+    append_triangles(obstacle, near, used);
     append_positions(obstacle, used.vertices);
     definition_.vertex_body.resize(at(definition_.vertex_count), static_cast<Index>(definition_.bodies.size()));
     definition_.bodies.push_back({obstacle.name(), Mobility::fixed});
@@ -88,10 +86,15 @@ class NearSceneBuilder {
     scene_.obstacle_bodies.push_back(body_);
   }
 
-  void append_triangles(const Triangles& added) {
-    const Index before = static_cast<Index>(definition_.triangles.rows());
-    definition_.triangles.conservativeResize(before + added.rows(), 3);
-    definition_.triangles.bottomRows(added.rows()) = added.array() + definition_.vertex_count;
+  void append_triangles(const Obstacle& obstacle, const std::vector<Index>& near, const UsedVertices& used) {
+    Index row = static_cast<Index>(definition_.triangles.rows());
+    definition_.triangles.conservativeResize(row + static_cast<Index>(near.size()), 3);
+    for (const Index triangle : near) {
+      for (Index k = 0; k < 3; ++k)
+        definition_.triangles(row, k) =
+            definition_.vertex_count + used.places[at(obstacle.triangles()(triangle, k) - used.first)];
+      ++row;
+    }
   }
 
   void append_positions(const Obstacle& obstacle, const std::vector<Index>& vertices) {

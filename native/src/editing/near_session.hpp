@@ -12,7 +12,7 @@
 
 namespace stiv {
 
-/// The obstacles near a box, and a session with them.
+/// The obstacles near a box, and a session with them, which has their positions.
 struct NearSession {
   NearScene scene;
   std::unique_ptr<SessionImplementation> session;

@@ -75,7 +75,10 @@ std::vector<Index> Obstacle::triangles_near(const Eigen::AlignedBox3d& box, cons
       }
     }
   });
+  std::size_t near = 0;
+  for (const std::vector<Index>& some : found) near += some.size();
   std::vector<Index> triangles;
+  triangles.reserve(near);
   for (const std::vector<Index>& some : found) triangles.insert(triangles.end(), some.begin(), some.end());
   return triangles;
 }

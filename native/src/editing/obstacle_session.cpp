@@ -10,6 +10,7 @@
 #include "editing/near_session.hpp"
 #include "editing/scene_rows.hpp"
 #include "editing/validation.hpp"
+#include "large_array.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -19,7 +20,7 @@ namespace {
 constexpr int boxes_per_call = 4;  // then all obstacles are near, which bounds the number of repetitions
 // If this many more ticks of a drag leave the box, the next one is prepared. That takes many free ticks, or a third of
 // them with contacts.
-constexpr double free_ticks_ahead = 18, contact_ticks_ahead = 12;
+constexpr double free_ticks_ahead = 21, contact_ticks_ahead = 12;
 
 void check_given(const Surface* surface, const Deformation* deformation, const Obstacles& obstacles) {
   if (surface == nullptr || deformation == nullptr) throw InputError("a surface and a deformation are needed");
@@ -71,6 +72,7 @@ class ObstacleSession final : public SessionImplementation {
     return carry_out(goal, execution, [&] { return near_->session->edit(goal, execution); });
   }
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over) override {
+    if (!reuse_) reuse_.emplace();
     EditResult result = carry_out(goal, execution, [&] { return near_->session->drag(goal, execution, hand_over); });
     if (result.status != EditStatus::cancelled) look_ahead(!result.events.empty(), execution.threads());
     return result;
@@ -98,7 +100,7 @@ class ObstacleSession final : public SessionImplementation {
     bounds_ = bounds;
     goal_ = goal;
     motion_.setZero();
-    next_.reset();
+    forget_others();
   }
 
   void set_weights(Eigen::VectorXd weights, std::vector<Eigen::Matrix3d> weight_axes) override {
@@ -109,7 +111,7 @@ class ObstacleSession final : public SessionImplementation {
     bounds_ = moving_bounds(*surface_, surface());
   }
 
-  void end_drag() override { next_.reset(); }
+  void end_drag() override { forget_others(); }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);
@@ -156,8 +158,8 @@ class ObstacleSession final : public SessionImplementation {
                                          Execution& execution) const {
     NearScene scene = near_scene(*surface_, obstacles_, box, named_bodies_, execution);
     return with_scene_numbers(scene, accepted, [&] {
-      auto session = make_surface_session(scene.surface, scene.obstacles, deformation_, start_, options_in(scene),
-                                          accepted, goal, execution);
+      auto session = make_surface_session(scene.surface, std::move(scene.obstacles), deformation_, start_,
+                                          options_in(scene), accepted, goal, execution);
       return std::make_unique<NearSession>(NearSession{std::move(scene), std::move(session)});
     });
   }
@@ -179,13 +181,21 @@ class ObstacleSession final : public SessionImplementation {
   /// Opens a session in a box, with the start of this one, and continues from accepted controls. If it throws, nothing
   /// has changed.
   void open(const Eigen::AlignedBox3d& box, const Controls& accepted, const Controls& goal, Execution& execution) {
+    previous_.reset();
     exchange_near(box, make_near(box, accepted, goal, execution));
   }
 
   void exchange_near(const Eigen::AlignedBox3d& box, std::unique_ptr<NearSession> near) {
-    near_ = std::move(near);
+    previous_ = std::exchange(near_, std::move(near));
     box_ = box;
     next_.reset();
+  }
+
+  /// Frees all memory but that of the open session.
+  void forget_others() {
+    next_.reset();
+    previous_.reset();
+    reuse_.reset();
   }
 
   bool is_next(const Eigen::AlignedBox3d& box) const {
@@ -217,9 +227,12 @@ class ObstacleSession final : public SessionImplementation {
     next_.reset();
     const Eigen::AlignedBox3d box = around(now);
     if (!contains(box, after(now, ticks_ahead), margin())) return;  // a motion so fast would leave it at once
-    next_.emplace(box, threads, [this, box, accepted = controls(), goal = goal_](Execution& execution) {
-      return make_near(box, accepted, goal, execution);
-    });
+    next_.emplace(box, threads,
+                  [this, box, accepted = controls(), goal = goal_,
+                   previous = std::move(previous_)](Execution& execution) mutable {
+                    previous.reset();
+                    return make_near(box, accepted, goal, execution);
+                  });
   }
 
   /// Bounds that some more ticks like the last one would sweep.
@@ -292,7 +305,8 @@ class ObstacleSession final : public SessionImplementation {
       return work();
     } catch (StartIntersectsError& error) {
       Execution execution(options_.threads);
-      SceneRows rows(scene.obstacles);
+      const Positions near = rows_of_obstacles(scene.obstacle_vertices);
+      SceneRows rows(near);
       StaticPairs found = IntersectionTest(scene.surface)
                               .find_all(rows.with_rest(deformation_->surface_in_range(controls, execution)), execution);
       found.faces = std::move(error.pairs);
@@ -301,6 +315,19 @@ class ObstacleSession final : public SessionImplementation {
       for (auto& [a, b] : found.faces) a = scene.whole_number(a), b = scene.whole_number(b);
       throw StartIntersectsError(message, std::move(found.faces));
     }
+  }
+
+  /// @param vertices numbered as if all obstacles followed the surface, ascending
+  Positions rows_of_obstacles(const std::vector<Index>& vertices) const {
+    Positions rows(static_cast<Index>(vertices.size()), 3);
+    auto obstacle = obstacles_.begin();
+    Index first = surface_->vertex_count(), row = 0;
+    for (const Index vertex : vertices) {
+      while (vertex - first >= (*obstacle)->positions().rows())
+        first += static_cast<Index>((*obstacle++)->positions().rows());
+      rows.row(row++) = (*obstacle)->positions().row(vertex - first);
+    }
+    return rows;
   }
 
   std::string describe_face(Index face, const NearScene& scene) const {
@@ -323,8 +350,10 @@ class ObstacleSession final : public SessionImplementation {
   Vector3 motion_ = Vector3::Zero();  ///< of the bounds in the last call
   Eigen::AlignedBox3d bounds_;        ///< of the accepted surface
   Eigen::AlignedBox3d box_;
+  std::optional<MemoryReuse> reuse_;  ///< from one box to the next, until a drag ends
   std::unique_ptr<NearSession> near_;
-  std::optional<NextSession> next_;  ///< last: its thread refers to the other members
+  std::shared_ptr<NearSession> previous_;  ///< in the last box; freed by the thread that prepares the next one
+  std::optional<NextSession> next_;        ///< last: its thread refers to the other members
 };
 
 }  // namespace

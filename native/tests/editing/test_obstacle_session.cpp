@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "editing/sessions.hpp"
+#include "large_array.hpp"
 #include "stiv/error.hpp"
 
 using namespace stiv;
@@ -96,6 +97,8 @@ TEST_CASE("obstacle session: the same bits for any number of threads, in boxes t
     if (tick == turn) CHECK(result.surface(0, 0) > scene.plate(0, 0) + 7);
     if (tick == ticks) CHECK(result.status == EditStatus::reached);
   }
+  for (EditSession* session : {&one, &two, &four}) session->end_drag();
+  CHECK(MemoryReuse::kept_bytes() == 0);
 }
 
 TEST_CASE("obstacle session: a call that is cancelled at any time, also while it opens a box, changes nothing") {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
+#include "large_array.hpp"
 
 namespace stiv {
 
@@ -10,6 +10,6 @@ struct alignas(32) PackedPoint {
   double coordinates[4];  ///< x, y, z, 0
 };
 
-using PackedPoints = std::vector<PackedPoint>;
+using PackedPoints = LargeArray<PackedPoint>;
 
 }  // namespace stiv

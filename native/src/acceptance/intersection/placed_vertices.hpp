@@ -23,7 +23,7 @@ class PlacedVertices {
 
   const PackedPoints& points() const { return points_; }
   /// A box is active if its vertex is marked in `moved`, and not one of those that rest.
-  const std::vector<PackedBox>& boxes() const { return boxes_; }
+  const LargeArray<PackedBox>& boxes() const { return boxes_; }
   /// 1 for each body with a vertex that the last update changed.
   const std::vector<unsigned char>& changed_bodies() const { return changed_bodies_; }
   /// Does the vertex belong to one of them?
@@ -36,7 +36,7 @@ class PlacedVertices {
   const Surface* surface_;
   Index resting_;
   PackedPoints points_;
-  std::vector<PackedBox> boxes_;
+  LargeArray<PackedBox> boxes_;
   double margin_ = 0;  // of the boxes
   std::vector<unsigned char> changed_bodies_;
 };

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "detection/broad_phase/bvh.hpp"
@@ -11,7 +12,7 @@
 namespace stiv {
 
 /// Corner indices of triangles. Edges and vertices are triangles without area: (a, b, b), (a, a, a).
-using CornerList = std::vector<std::array<Index, 3>>;
+using CornerList = LargeArray<std::array<Index, 3>>;
 
 CornerList triangle_corners(const Surface& surface);
 CornerList loose_edge_corners(const Surface& surface);
@@ -28,7 +29,7 @@ class Primitives {
   void note_changes(const std::vector<unsigned char>& bodies);
 
   /// A primitive is active if one of its vertices is.
-  void update(const std::vector<PackedBox>& vertices, const Execution& execution);
+  void update(std::span<const PackedBox> vertices, const Execution& execution);
 
   /// Excludes pairs that share a vertex marked in `free_stars`, (N), from later searches of the tree with itself.
   /// @param changed bodies in which vertices may be marked otherwise than in the last call
@@ -42,10 +43,11 @@ class Primitives {
 
  private:
   CornerList corners_;
-  std::vector<Index> bodies_;
+  LargeArray<Index> bodies_;
+  std::vector<unsigned char> at_rest_;  // fixed bodies
   std::vector<unsigned char> changed_;  // bodies, since the last update
-  std::vector<Index> names_;            // of corners in the tree, three for each primitive
-  std::vector<Index> block_corners_;    // vertices in the tree's order
+  LargeArray<Index> names_;             // of corners in the tree, three for each primitive
+  LargeArray<Index> block_corners_;     // vertices in the tree's order
   std::optional<Bvh> tree_;
 };
 

@@ -21,8 +21,7 @@ struct LinkEdgeTable {
   std::vector<std::size_t> start;
   std::vector<LinkEdge> edges;
 
-  LinkEdgeTable(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count)
-      : start(at(vertex_count) + 2, 0) {
+  LinkEdgeTable(std::span<const std::array<Index, 3>> triangles, Index vertex_count) : start(at(vertex_count) + 2, 0) {
     for (const auto& corners : triangles)
       for (const Index corner : corners) ++start[at(corner) + 2];
     for (std::size_t k = 2; k < start.size(); ++k) start[k] += start[k - 1];
@@ -69,7 +68,7 @@ bool is_provable(Index vertex, std::span<LinkEdge> edges) {
 
 }  // namespace
 
-Stars::Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count) {
+Stars::Stars(std::span<const std::array<Index, 3>> triangles, Index vertex_count) {
   LinkEdgeTable table(triangles, vertex_count);
   start_.reserve(at(vertex_count) + 1);
   links_.reserve(table.edges.size() + at(vertex_count));

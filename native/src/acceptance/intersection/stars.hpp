@@ -18,7 +18,7 @@ namespace stiv {
 class Stars {
  public:
   /// @param triangles (F, 3) corners, which may repeat
-  Stars(const std::vector<std::array<Index, 3>>& triangles, Index vertex_count);
+  Stars(std::span<const std::array<Index, 3>> triangles, Index vertex_count);
 
   /// The result of a proof for one star.
   enum Proof : unsigned char { inconclusive, free_here, free_within_reach };

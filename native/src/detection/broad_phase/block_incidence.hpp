@@ -30,10 +30,22 @@ class BlockIncidence {
   }
 
  private:
+  /// Are all vertices of a block beyond the first ones? Compilers turn this into vector code.
+  bool is_unlisted(std::span<const Index> corners) const {
+    const auto count = static_cast<Index>(first_.size() - 1);
+    Index signs = 0;
+    for (const Index corner : corners) signs |= (corner - count) & ~corner;
+    return signs >= 0;
+  }
+
   template <class Visit>
   void for_each_once(std::span<const Index> corners, std::size_t block_size, const Visit& visit) const {
     std::vector<Index> last(first_.size(), -1);  // block of each vertex
     for (std::size_t corner = 0; corner < corners.size(); ++corner) {
+      if (corner % block_size == 0 && is_unlisted(corners.subspan(corner, block_size))) {
+        corner += block_size - 1;
+        continue;
+      }
       const auto block = static_cast<Index>(corner / block_size);
       const bool is_listed = corners[corner] >= 0 && corners[corner] < static_cast<Index>(first_.size()) - 1;
       if (!is_listed || last[corners[corner]] == block) continue;

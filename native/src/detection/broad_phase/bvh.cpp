@@ -6,8 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "detection/broad_phase/block_order.hpp"
-
 namespace stiv {
 
 namespace {
@@ -96,34 +94,38 @@ NumberedPoint centre_of(const Bounds& box, Index number) {
   return centre;
 }
 
-std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes) {
-  std::vector<NumberedPoint> centres;
+NumberedPoints centres_of(const std::vector<Bounds>& boxes) {
+  NumberedPoints centres;
   centres.reserve(boxes.size());
   for (const Bounds& box : boxes) centres.push_back(centre_of(box, static_cast<Index>(centres.size())));
   return centres;
 }
 
-Bvh::Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
-         const Execution& execution)
-    : Bvh(block_order(centres, groups, width, execution), static_cast<Index>(centres.size()), groups, corners,
-          execution) {}
+Bvh::Bvh(NumberedPoints centres, const PrimitiveGroups& groups, const CornerRows& corners, const Execution& execution)
+    : size_(static_cast<Index>(centres.size())), order_(block_order(std::move(centres), groups, width, execution)) {
+  begin(groups.of_primitives, corners, execution);
+}
 
-Bvh::Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
+Bvh::Bvh(LargeArray<Index> order, Index count, std::span<const Index> groups, const CornerRows& corners,
          const Execution& execution)
     : size_(count), order_(std::move(order)) {
+  begin(groups, corners, execution);
+}
+
+void Bvh::begin(std::span<const Index> groups, const CornerRows& corners, const Execution& execution) {
   reserve_levels(groups);
   const Index last_group = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end());
   set_corners(corners, std::vector<unsigned char>(static_cast<std::size_t>(last_group) + 1, 1), execution);
 }
 
-Bvh::Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups, const CornerRows& corners)
+Bvh::Bvh(const std::vector<Bounds>& boxes, std::span<const Index> groups, const CornerRows& corners)
     : Bvh(centres_of(boxes), groups, corners, Execution(1)) {
   refit(boxes);
 }
 
-void Bvh::reserve_levels(const std::vector<Index>& groups) {
+void Bvh::reserve_levels(std::span<const Index> groups) {
   for (std::size_t count = order_.size() / width; count > 0; count = (count + width - 1) / width) {
-    levels_.push_back({std::vector<Node>(count), std::vector<PackedBox>(count), std::vector<Index>(count, 0)});
+    levels_.push_back({LargeArray<Node>(count), LargeArray<PackedBox>(count), LargeArray<Index>(count, 0)});
     if (count == 1) break;
   }
   if (groups.empty()) return;
@@ -141,20 +143,25 @@ void Bvh::set_corners(const CornerRows& corners, const std::vector<unsigned char
                       const Execution& execution) {
   corner_size_ = corners.size;
   incidence_.reset();
-  corners_.resize(order_.size() * static_cast<std::size_t>(corners.size));
+  const std::size_t block_size = static_cast<std::size_t>(corners.size) * width;
+  const bool are_new = corners_.size() != order_.size() / width * block_size;
+  corners_.resize(order_.size() / width * block_size);
   execution.for_chunks(static_cast<Index>(order_.size() / width), 2 * chunk_size, [&](Index begin, Index end, Index) {
     for (Index block = begin; block < end; ++block)
-      if (changed[levels_[0].groups[block]] != 0) list_corners(corners, block, corners_);
+      if (changed[levels_[0].groups[block]] != 0)
+        list_corners(corners, block, corners_);
+      else if (are_new)
+        std::fill_n(corners_.begin() + static_cast<std::ptrdiff_t>(block_size) * block, block_size, -1);
   });
 }
 
-std::vector<Index> Bvh::block_corners(const CornerRows& rows) const {
-  std::vector<Index> corners(order_.size() * static_cast<std::size_t>(rows.size));
+LargeArray<Index> Bvh::block_corners(const CornerRows& rows) const {
+  LargeArray<Index> corners(order_.size() * static_cast<std::size_t>(rows.size));
   for (Index block = 0; block < static_cast<Index>(order_.size() / width); ++block) list_corners(rows, block, corners);
   return corners;
 }
 
-void Bvh::list_corners(const CornerRows& rows, Index block, std::vector<Index>& corners) const {
+void Bvh::list_corners(const CornerRows& rows, Index block, LargeArray<Index>& corners) const {
   const std::size_t size = rows.size;
   for (Index place = block * width; place < (block + 1) * width; ++place) {
     const Index primitive = order_[place];
@@ -224,7 +231,7 @@ void Bvh::summarise_touched() {
   }
 }
 
-void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution) {
+void Bvh::refit_corners(std::span<const PackedBox> vertices, const Execution& execution) {
   if (levels_.empty()) return;
   execution.for_chunks(static_cast<Index>(levels_[0].nodes.size()), chunk_size, [&](Index begin, Index end, Index) {
     refit_blocks(nullptr, begin, end, corners_, vertices.data());
@@ -232,13 +239,13 @@ void Bvh::refit_corners(const std::vector<PackedBox>& vertices, const Execution&
   summarise_all(execution);
 }
 
-void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, std::span<const PackedBox> vertices,
                                const Execution& execution) {
   refit_groups_corners(changed, corners_, vertices, execution);
 }
 
-void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<Index>& block_corners,
-                               const std::vector<PackedBox>& vertices, const Execution& execution) {
+void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, std::span<const Index> block_corners,
+                               std::span<const PackedBox> vertices, const Execution& execution) {
   list_nodes_of(changed);
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     const std::vector<Index>& nodes = group_nodes_[level];
@@ -251,7 +258,7 @@ void Bvh::refit_groups_corners(const std::vector<unsigned char>& changed, const 
   }
 }
 
-void Bvh::refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices) {
+void Bvh::refit_some_corners(std::span<const Index> changed, std::span<const PackedBox> vertices) {
   if (levels_.empty()) return;
   prepare_refit_some_corners(static_cast<Index>(vertices.size()));
   find_touched(changed);

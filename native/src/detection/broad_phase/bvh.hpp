@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "detection/broad_phase/block_incidence.hpp"
+#include "detection/broad_phase/block_order.hpp"
 #include "detection/broad_phase/bounds.hpp"
 #include "detection/broad_phase/group_frames.hpp"
 #include "detection/broad_phase/numbered_point.hpp"
@@ -73,12 +74,11 @@ class Bvh {
 
   /// Builds over the centers of the given boxes. `groups[i]` (empty: all 0): primitives of different groups never share
   /// a block, and subtrees of groups that do not meet are not compared.
-  explicit Bvh(const std::vector<Bounds>& boxes, const std::vector<Index>& groups = {}, const CornerRows& corners = {});
+  explicit Bvh(const std::vector<Bounds>& boxes, std::span<const Index> groups = {}, const CornerRows& corners = {});
   /// Builds over the centers of primitives; the boxes come with the first refit.
-  Bvh(const std::vector<NumberedPoint>& centres, const std::vector<Index>& groups, const CornerRows& corners,
-      const Execution& execution);
+  Bvh(NumberedPoints centres, const PrimitiveGroups& groups, const CornerRows& corners, const Execution& execution);
   /// The same in a given order of all `count` primitives, as block_order returns it.
-  Bvh(std::vector<Index> order, Index count, const std::vector<Index>& groups, const CornerRows& corners,
+  Bvh(LargeArray<Index> order, Index count, std::span<const Index> groups, const CornerRows& corners,
       const Execution& execution);
 
   Index size() const { return size_; }
@@ -92,20 +92,21 @@ class Bvh {
   void refit(const BoxOf& box_of, const Execution& execution);
 
   /// The same where a primitive's box is the union of those of its corners (at least one).
-  void refit_corners(const std::vector<PackedBox>& vertices, const Execution& execution);
+  void refit_corners(std::span<const PackedBox> vertices, const Execution& execution);
   /// For the primitives of groups that are marked in `changed`.
-  void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<PackedBox>& vertices,
+  void refit_groups_corners(const std::vector<unsigned char>& changed, std::span<const PackedBox> vertices,
                             const Execution& execution);
   /// The same for the primitives with a corner among `changed`. The cost does not depend on the others.
-  void refit_some_corners(std::span<const Index> changed, const std::vector<PackedBox>& vertices);
+  void refit_some_corners(std::span<const Index> changed, std::span<const PackedBox> vertices);
   /// Allocates what the first refit of some corners would allocate, if only the first vertices ever change.
   void prepare_refit_some_corners(Index vertex_count);
   /// For a tree whose corners are names: the vertices of each block, (blocks, size, width), -1: none.
-  std::vector<Index> block_corners(const CornerRows& rows) const;
-  void refit_groups_corners(const std::vector<unsigned char>& changed, const std::vector<Index>& block_corners,
-                            const std::vector<PackedBox>& vertices, const Execution& execution);
+  LargeArray<Index> block_corners(const CornerRows& rows) const;
+  void refit_groups_corners(const std::vector<unsigned char>& changed, std::span<const Index> block_corners,
+                            std::span<const PackedBox> vertices, const Execution& execution);
 
-  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones.
+  /// Other corners for the same primitives; in groups that are not marked in `changed`, they must be the same ones, or
+  /// none if there were none before.
   void set_corners(const CornerRows& corners, const std::vector<unsigned char>& changed, const Execution& execution);
 
   /// Two subtrees to compare: a unit of work.
@@ -132,13 +133,13 @@ class Bvh {
     alignas(32) float planes[8][width];  ///< PackedBox::values of eight children, absent ones empty
   };
   struct Level {
-    std::vector<Node> nodes;
-    std::vector<PackedBox> boxes;  ///< of each node
-    std::vector<Index> groups;     ///< of all primitives below each node, or Bvh::mixed
+    LargeArray<Node> nodes;
+    LargeArray<PackedBox> boxes;  ///< of each node
+    LargeArray<Index> groups;     ///< of all primitives below each node, or Bvh::mixed
   };
   const std::vector<Level>& levels() const { return levels_; }
-  const std::vector<Index>& order() const { return order_; }
-  const std::vector<Index>& corners() const { return corners_; }  ///< (blocks, corner_size, width)
+  const LargeArray<Index>& order() const { return order_; }
+  const LargeArray<Index>& corners() const { return corners_; }  ///< (blocks, corner_size, width)
   Index corner_size() const { return corner_size_; }
 
   static constexpr Index mixed = GroupFrames::mixed;
@@ -148,13 +149,14 @@ class Bvh {
   void finish_node(Level& level, std::size_t node);
   /// The nodes number `begin` to `end` of a list, or of all (nullptr), from the boxes of the level below.
   void summarise(std::size_t level, const Index* nodes, Index begin, Index end);
-  void reserve_levels(const std::vector<Index>& groups);
+  void begin(std::span<const Index> groups, const CornerRows& corners, const Execution& execution);
+  void reserve_levels(std::span<const Index> groups);
 
-  void list_corners(const CornerRows& rows, Index block, std::vector<Index>& corners) const;
+  void list_corners(const CornerRows& rows, Index block, LargeArray<Index>& corners) const;
   template <class BoxOf>
   void refit_block(std::size_t block, const BoxOf& box_of);
   /// Blocks number `begin` to `end` of a list, or of all (nullptr).
-  void refit_blocks(const Index* blocks, Index begin, Index end, const std::vector<Index>& corners,
+  void refit_blocks(const Index* blocks, Index begin, Index end, std::span<const Index> corners,
                     const PackedBox* vertices);
   void find_touched(std::span<const Index> vertices);
   void summarise_touched();
@@ -165,9 +167,9 @@ class Bvh {
   static constexpr Index chunk_size = 512;
 
   Index size_ = 0;
-  std::vector<Index> order_;   // primitive of each place in the blocks, -1: none
+  LargeArray<Index> order_;    // primitive of each place in the blocks, -1: none
   std::vector<Level> levels_;  // blocks first, the root last
-  std::vector<Index> corners_;
+  LargeArray<Index> corners_;
   Index corner_size_ = 0;
   std::optional<BlockIncidence> incidence_;      // of these corners, for refit_some_corners
   std::vector<unsigned char> is_touched_;        // its work space: for each block, zero between calls
@@ -179,7 +181,7 @@ class Bvh {
 /// The center of a box, zero where it is infinite.
 NumberedPoint centre_of(const Bounds& box, Index number);
 /// The same for each of several boxes.
-std::vector<NumberedPoint> centres_of(const std::vector<Bounds>& boxes);
+NumberedPoints centres_of(const std::vector<Bounds>& boxes);
 
 template <class BoxOf>
 void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
@@ -188,7 +190,7 @@ void Bvh::refit_block(std::size_t block, const BoxOf& box_of) {
   for (std::size_t lane = 0; lane < width; ++lane) {
     const Index primitive = order_[block * width + lane];
     const PackedBox box = primitive >= 0 ? box_of(primitive) : PackedBox::empty();
-    for (std::size_t k = 0; k < 7; ++k) blocks.nodes[block].planes[k][lane] = box.values[k];
+    for (std::size_t k = 0; k < 8; ++k) blocks.nodes[block].planes[k][lane] = box.values[k];
     all.include(box);
   }
   blocks.boxes[block] = all;

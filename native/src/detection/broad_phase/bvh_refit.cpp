@@ -113,8 +113,7 @@ void refit_blocks(Index size, const Index* blocks, Index begin, Index end, const
     refit_blocks_of_size<3>(blocks, begin, end, corners, vertices, level);
 }
 
-void summarise_nodes(const std::vector<PackedBox>& below, const Index* nodes, Index begin, Index end,
-                     Bvh::Level& level) {
+void summarise_nodes(std::span<const PackedBox> below, const Index* nodes, Index begin, Index end, Bvh::Level& level) {
   const PackedBox absent = PackedBox::empty();
   for (Index k = begin; k < end; ++k) {
     const auto node = static_cast<std::size_t>(nodes == nullptr ? k : nodes[k]);
@@ -133,7 +132,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace stiv {
 
-void Bvh::refit_blocks(const Index* blocks, Index begin, Index end, const std::vector<Index>& corners,
+void Bvh::refit_blocks(const Index* blocks, Index begin, Index end, std::span<const Index> corners,
                        const PackedBox* vertices) {
   if (begin == end) return;
   const auto size = static_cast<Index>(corners.size() / order_.size());

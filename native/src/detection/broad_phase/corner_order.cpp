@@ -10,7 +10,7 @@ namespace stiv {
 namespace {
 
 template <Index size>
-Index key_of(const Index* row, const std::vector<Index>& places) {
+Index key_of(const Index* row, std::span<const Index> places) {
   const Index a = places[row[0]], b = places[row[1]];
   if constexpr (size == 2) return std::min(a, b);
   const Index c = places[row[2]];
@@ -19,8 +19,8 @@ Index key_of(const Index* row, const std::vector<Index>& places) {
 
 /// A counting sort; primitives with equal keys keep their order.
 template <Index size>
-std::vector<Index> sorted(const Index* rows, Index count, const std::vector<Index>& places) {
-  std::vector<Index> keys(count), starts(places.size(), 0), order(count);
+LargeArray<Index> sorted(const Index* rows, Index count, std::span<const Index> places) {
+  LargeArray<Index> keys(at(count)), starts(places.size(), 0), order(at(count));
   for (Index primitive = 0; primitive < count; ++primitive) {
     keys[primitive] = key_of<size>(rows + static_cast<std::ptrdiff_t>(primitive) * size, places);
     ++starts[keys[primitive]];
@@ -33,7 +33,7 @@ std::vector<Index> sorted(const Index* rows, Index count, const std::vector<Inde
 
 }  // namespace
 
-std::vector<Index> order_by_corners(const Index* rows, Index count, Index size, const std::vector<Index>& places) {
+LargeArray<Index> order_by_corners(const Index* rows, Index count, Index size, std::span<const Index> places) {
   return size == 2 ? sorted<2>(rows, count, places) : sorted<3>(rows, count, places);
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <vector>
+#include <span>
 
+#include "large_array.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -10,6 +11,6 @@ namespace stiv {
 /// Edges or triangles (rows of 2 or 3 vertices) in the order in which a curve visits the vertices, given the place of
 /// each vertex along it. An edge comes at its first corner, a triangle at the middle one, which is closer to its
 /// center. Linear, and much faster than sorting primitives by their own places on the curve.
-std::vector<Index> order_by_corners(const Index* rows, Index count, Index size, const std::vector<Index>& places);
+LargeArray<Index> order_by_corners(const Index* rows, Index count, Index size, std::span<const Index> places);
 
 }  // namespace stiv

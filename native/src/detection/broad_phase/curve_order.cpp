@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <utility>
-#include <vector>
 
 #include "detection/broad_phase/curve_places.hpp"
 
@@ -27,12 +26,12 @@ CellScale scale_of(std::span<const NumberedPoint> points) {
 }
 
 /// Sorts by place; ties keep their order. A digit at a time, the lowest first.
-void sort_by_place(std::vector<CurveEntry>& entries) {
+void sort_by_place(LargeArray<CurveEntry>& entries) {
   std::array<std::array<std::uint32_t, curve_side>, 3> starts{};
   for (const CurveEntry& entry : entries)
     for (std::size_t digit = 0; digit < 3; ++digit)
       ++starts[digit][entry.place >> digit * curve_bits & (curve_side - 1)];
-  std::vector<CurveEntry> sorted(entries.size());
+  LargeArray<CurveEntry> sorted(entries.size());
   for (std::size_t digit = 0; digit < 3; ++digit) {
     std::uint32_t sum = 0;
     for (std::uint32_t& start : starts[digit]) sum += std::exchange(start, sum);
@@ -47,10 +46,10 @@ void sort_by_place(std::vector<CurveEntry>& entries) {
 void sort_along_curve(std::span<NumberedPoint> points) {
   constexpr std::size_t few = 64;
   if (points.size() < 2) return;
-  std::vector<CurveEntry> entries(points.size());
+  LargeArray<CurveEntry> entries(points.size());
   find_places(points, scale_of(points), entries.data());
   sort_by_place(entries);
-  const std::vector<NumberedPoint> before(points.begin(), points.end());
+  const NumberedPoints before(points.begin(), points.end());
   for (std::size_t k = 0; k < points.size(); ++k) points[k] = before[entries[k].point];
   if (entries.front().place == entries.back().place) return;
   // A cell that holds many points is a small part of the cube: these are sorted in a cube of their own.

@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "large_array.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -12,5 +13,7 @@ struct alignas(16) NumberedPoint {
   std::array<float, 3> position;
   Index number;  ///< at least 0, no two equal
 };
+
+using NumberedPoints = LargeArray<NumberedPoint>;
 
 }  // namespace stiv

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -57,8 +58,8 @@ class PrimitiveTree {
 
   /// The vertices when their tree was built, for the first trees over their primitives.
   struct Curve {
-    std::vector<NumberedPoint> points;  ///< see points_at
-    std::vector<Index> places;          ///< of each vertex along a space-filling curve
+    NumberedPoints points;     ///< see points_at
+    LargeArray<Index> places;  ///< of each vertex along a space-filling curve
   };
   const Curve& curve() const { return curve_; }
   /// Frees the memory, once those trees are built.
@@ -77,15 +78,15 @@ class PrimitiveTree {
 
   /// Sorted by the start of the step: its end may be anywhere.
   void build(const PositionsView& start, const Execution& execution) {
-    const std::vector<Index> bodies = bodies_of_primitives(execution);
-    tree_.emplace(order_at(start, bodies, execution), count_, bodies, CornerRows{rows_, size}, execution);
+    const LargeArray<Index> bodies = bodies_of_primitives(execution);
+    const std::vector<unsigned char> at_rest = surface_.fixed_bodies();
+    tree_.emplace(order_at(start, {bodies, at_rest}, execution), count_, bodies, CornerRows{rows_, size}, execution);
     spread_ = spread(start);
   }
 
-  std::vector<Index> order_at(const PositionsView& start, const std::vector<Index>& bodies,
-                              const Execution& execution) {
+  LargeArray<Index> order_at(const PositionsView& start, const PrimitiveGroups& bodies, const Execution& execution) {
     if constexpr (size == 1) {
-      std::vector<NumberedPoint> points = points_at(start, execution);
+      NumberedPoints points = points_at(start, execution);
       if (!tree_) curve_.points = points;
       sort_along_curve(points);
       if (!tree_) curve_.places = places_of(points);
@@ -93,16 +94,19 @@ class PrimitiveTree {
     } else {
       // A tree that is built again sorts its own primitives: the vertices' tree may be an old one.
       if (!vertices_ || tree_)
-        return block_order(centres_of({}, points_at(start, execution), execution), bodies, Bvh::width, execution);
+        return block_order(centres_of(all(), points_at(start, execution), execution), bodies, Bvh::width, execution);
       const auto& [points, places] = vertices_->curve();
-      const std::vector<Index> order = order_by_corners(rows_, count_, size, places);
-      return block_order_along(centres_of(order, points, execution), bodies, Bvh::width, execution);
+      const auto [resting, others] = divide_order(order_by_corners(rows_, count_, size, places), bodies, Bvh::width);
+      LargeArray<Index> blocks =
+          block_order_along(centres_of(others, points, execution), bodies, Bvh::width, execution);
+      blocks.insert(blocks.end(), resting.begin(), resting.end());
+      return blocks;
     }
   }
 
   /// Of all vertices, scaled so that no sum overflows; zero for vertices beyond single precision.
-  std::vector<NumberedPoint> points_at(const PositionsView& start, const Execution& execution) const {
-    std::vector<NumberedPoint> points(static_cast<std::size_t>(surface_.vertex_count()));
+  NumberedPoints points_at(const PositionsView& start, const Execution& execution) const {
+    NumberedPoints points(static_cast<std::size_t>(surface_.vertex_count()));
     execution.for_chunks(surface_.vertex_count(), chunk_size, [&](Index begin, Index end, Index) {
       for (Index vertex = begin; vertex < end; ++vertex) {
         const Eigen::Vector3f point = (start.row(vertex) - start.row(0)).template cast<float>() / 4;
@@ -113,20 +117,26 @@ class PrimitiveTree {
     return points;
   }
 
-  static std::vector<Index> places_of(const std::vector<NumberedPoint>& along_curve) {
-    std::vector<Index> places(along_curve.size());
+  static LargeArray<Index> places_of(const NumberedPoints& along_curve) {
+    LargeArray<Index> places(along_curve.size());
     for (std::size_t place = 0; place < along_curve.size(); ++place)
       places[along_curve[place].number] = static_cast<Index>(place);
     return places;
   }
 
-  /// Sums of the corners of all primitives, in an order of these (empty: ascending).
-  std::vector<NumberedPoint> centres_of(const std::vector<Index>& order, const std::vector<NumberedPoint>& points,
-                                        const Execution& execution) const {
-    std::vector<NumberedPoint> centres(static_cast<std::size_t>(count_));
-    execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
+  LargeArray<Index> all() const {
+    LargeArray<Index> all(at(count_));
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
+  /// Sums of the corners of some primitives.
+  NumberedPoints centres_of(std::span<const Index> primitives, const NumberedPoints& points,
+                            const Execution& execution) const {
+    NumberedPoints centres(primitives.size());
+    execution.for_chunks(static_cast<Index>(primitives.size()), chunk_size, [&](Index begin, Index end, Index) {
       for (Index place = begin; place < end; ++place) {
-        const Index primitive = order.empty() ? place : order[place];
+        const Index primitive = primitives[at(place)];
         const auto corners = row(primitive);
         NumberedPoint centre = points[corners[0]];
         for (std::size_t k = 1; k < static_cast<std::size_t>(size); ++k)
@@ -139,9 +149,9 @@ class PrimitiveTree {
   }
 
   /// Empty if there is only one body.
-  std::vector<Index> bodies_of_primitives(const Execution& execution) const {
+  LargeArray<Index> bodies_of_primitives(const Execution& execution) const {
     if (surface_.bodies().size() == 1) return {};
-    std::vector<Index> bodies(count_);
+    LargeArray<Index> bodies(at(count_));
     execution.for_chunks(count_, chunk_size, [&](Index begin, Index end, Index) {
       for (Index primitive = begin; primitive < end; ++primitive)
         bodies[primitive] = surface_.body_of(row(primitive)[0]);
@@ -152,7 +162,7 @@ class PrimitiveTree {
   /// Mean extent of a sample of blocks, relative to the whole extent. It is constant while neighbors stay together.
   double spread(const PositionsView& start) const {
     constexpr std::size_t stride = 8;
-    const std::vector<Index>& order = tree_->order();
+    const LargeArray<Index>& order = tree_->order();
     Eigen::AlignedBox3d whole;
     double sum = 0;
     for (std::size_t first = 0; first < order.size(); first += stride * Bvh::width) {

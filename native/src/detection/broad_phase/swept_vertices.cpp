@@ -172,7 +172,7 @@ PackedBox SweptVertices::box(const Step& step, Index vertex) const {
 /// Is the start that of the vertex's box, and is the end within the slack of the segment? In the frame of the body for
 /// its boxes and for pairs within it, in the common frame for other pairs.
 bool SweptVertices::near_segment(const Step& step, Index vertex) const {
-  if (!same_bits(step.start, start_, vertex, 1)) return false;
+  if (vertex < changing() && !same_bits(step.start, start_, vertex, 1)) return false;
   const Index body = surface_.body_of(vertex);
   const Vector3 &own = motions_.of_body(body), &own_of_step = step.motions.of_body(body);
   const bool has_own_frame = own != motions_.common || own_of_step != step.motions.common;
@@ -183,8 +183,9 @@ bool SweptVertices::near_segment(const Step& step, Index vertex) const {
 /// The same in a frame with one motion for the boxes, and another one for the step.
 bool SweptVertices::near_segment(const Step& step, Index vertex, const Vector3& frame_motion,
                                  const Vector3& step_motion) const {
-  const Vector3 start = start_.row(vertex), end = step.end.row(vertex);
-  const Vector3 motion = Vector3(end_.row(vertex)) - start - frame_motion, other = end - start - step_motion;
+  const Vector3 start = step.start.row(vertex), end = step.end.row(vertex);
+  const Vector3 end_of_box = vertex < changing() ? Vector3(end_.row(vertex)) : end;
+  const Vector3 motion = end_of_box - start - frame_motion, other = end - start - step_motion;
   const double length2 = motion.squaredNorm();
   const bool may_move = boxes_[vertex].active() || start == end;
   if (!(length2 > 0) || !may_move) return false;
@@ -224,6 +225,7 @@ void SweptVertices::sweep(const Step& step, const std::vector<Index>& vertices, 
     const std::span<const Index> some(vertices.data() + begin, vertices.data() + end);
     reaches[chunk] = motions_.has_own_frames() ? make_framed_boxes(step, some) : make_boxes(some);
     for (const Index vertex : some) {
+      if (vertex >= changing()) break;
       start_.row(vertex) = step.start.row(vertex);
       end_.row(vertex) = step.end.row(vertex);
     }
@@ -266,7 +268,7 @@ bool SweptVertices::stays_near(const Positions& surface, const Step& step, const
     bool all = near.load(std::memory_order_relaxed);
     for (Index vertex = begin; vertex < end && all; ++vertex) {
       const double *const from = row(step.start, vertex), *const to = row(step.end, vertex);
-      const double* const place = row(surface, vertex);
+      const double* const place = vertex < changing() ? row(surface, vertex) : from;
       bool moves = false;
       for (std::size_t k = 0; k < 3; ++k) {
         all &= std::abs(from[k] - place[k]) <= reach && std::abs(to[k] - place[k]) <= reach;
@@ -307,8 +309,8 @@ SweptVertices::Change SweptVertices::update(const Step& step, const Execution& e
     boxes_.resize(count);
     coarse_steps_.resize(count);
     coarse_reach_ = 0;
-    start_.resize(count, 3);
-    end_.resize(count, 3);
+    start_.resize(changing(), 3);
+    end_.resize(changing(), 3);
     if (static_cast<Index>(changed_.size()) < count) {
       changed_.resize(count);
       std::iota(changed_.begin(), changed_.end(), 0);

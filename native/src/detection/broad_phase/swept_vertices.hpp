@@ -9,6 +9,7 @@
 #include "detection/broad_phase/candidate_source.hpp"
 #include "detection/broad_phase/group_frames.hpp"
 #include "detection/filters/coarse_hull_filter.hpp"
+#include "large_array.hpp"
 
 namespace stiv {
 
@@ -56,11 +57,11 @@ class SweptVertices {
   /// The step that was taken last.
   const VertexSteps& steps() const { return steps_; }
   /// The steps of the boxes in single precision, in a frame with the common motion.
-  const std::vector<CoarseStep>& coarse_steps() const { return coarse_steps_; }
+  const LargeArray<CoarseStep>& coarse_steps() const { return coarse_steps_; }
   const CoarseFrame& coarse_frame() const { return coarse_frame_; }
   /// Bounds of the gaps between these steps that allow for the slack.
   CoarseBounds coarse_bounds() const { return {coarse_frame_, frame_.separation, slack, coarse_reach_}; }
-  const std::vector<PackedBox>& boxes() const { return boxes_; }
+  const LargeArray<PackedBox>& boxes() const { return boxes_; }
   const std::vector<Index>& changed() const { return changed_; }
   /// 1 for each body with a changed vertex. Known after a change of `some`.
   const std::vector<unsigned char>& changed_bodies() const { return changed_bodies_; }
@@ -104,9 +105,9 @@ class SweptVertices {
   Index resting_ = 0;  ///< vertices
   Frame frame_;
   FrameMotions motions_;
-  Positions start_, end_;  // of the step for which each box was computed
-  std::vector<PackedBox> boxes_;
-  std::vector<CoarseStep> coarse_steps_;
+  Positions start_, end_;  // of the step for which each box was computed, of the vertices that may change
+  LargeArray<PackedBox> boxes_;
+  LargeArray<CoarseStep> coarse_steps_;
   CoarseFrame coarse_frame_;
   std::int32_t coarse_reach_ = 0;  // no less than that of any coarse step
   std::vector<Index> changed_;

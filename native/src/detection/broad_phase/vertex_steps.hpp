@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "large_array.hpp"
 #include "stiv/execution.hpp"
 #include "stiv/types.hpp"
 
@@ -27,6 +28,9 @@ class VertexSteps {
   void update(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
               const Execution& execution);
 
+  /// Sets the step of a vertex that rests.
+  void update_one(Index vertex, const PositionsView& positions) { take(positions, positions, vertex, vertex); }
+
   /// Updates some vertices from their rows, (k, 3) each.
   void update_rows(const PositionsView& start, const PositionsView& end, const std::vector<Index>& vertices,
                    Index vertex_count, const Execution& execution);
@@ -36,7 +40,7 @@ class VertexSteps {
  private:
   void take(const PositionsView& start, const PositionsView& end, Index row, Index vertex);
 
-  std::vector<VertexStep> rows_;
+  LargeArray<VertexStep> rows_;
 };
 
 }  // namespace stiv

@@ -160,7 +160,7 @@ TEST_CASE("bvh: after some vertices changed, all nodes are those of a complete r
     return result;
   };
   const std::vector<PackedBox> moved = packed(random_boxes(vertices, 0.1, 14));
-  const std::vector<NumberedPoint> centres = centres_of(random_boxes(faces, 0.1, 15));
+  const NumberedPoints centres = centres_of(random_boxes(faces, 0.1, 15));
   const Execution execution(1);
   Bvh tree(centres, {}, {rows.data(), 3}, execution), whole = tree;
   std::vector<PackedBox> boxes = packed(random_boxes(vertices, 0.1, 13));
@@ -190,7 +190,7 @@ TEST_CASE("bvh: the order of pairs does not depend on the number of threads") {
 }
 
 TEST_CASE("bvh: the tree does not depend on the number of threads") {
-  const std::vector<NumberedPoint> centres = centres_of(random_boxes(20000, 0.05, 8));
+  const NumberedPoints centres = centres_of(random_boxes(20000, 0.05, 8));
   std::vector<Index> groups;
   for (Index k = 0; k < 20000; ++k) groups.push_back(k < 15000 ? 0 : 1);
   const Bvh tree(centres, groups, {}, Execution(1));

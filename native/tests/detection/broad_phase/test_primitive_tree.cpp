@@ -55,7 +55,7 @@ std::vector<Index> shuffled() {
 /// Pairs of nodes whose children a traversal of the tree against itself compares.
 std::int64_t visited(const Bvh& tree, std::size_t level, std::size_t a, std::size_t b) {
   if (level == 0) return 1;
-  const std::vector<PackedBox>& below = tree.levels()[level - 1].boxes;
+  const LargeArray<PackedBox>& below = tree.levels()[level - 1].boxes;
   std::int64_t sum = 1;
   for (std::size_t i = Bvh::width * a; i < std::min(below.size(), Bvh::width * (a + 1)); ++i)
     for (std::size_t j = a == b ? i : Bvh::width * b; j < std::min(below.size(), Bvh::width * (b + 1)); ++j)

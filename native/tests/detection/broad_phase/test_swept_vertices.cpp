@@ -37,7 +37,7 @@ TEST_CASE("swept vertices: boxes change where the step does") {
   const Positions motion = scene.end - scene.start;
   SweptVertices swept(surface);
   CHECK(update(swept, scene.start, scene.end) == Change::all);
-  const std::vector<PackedBox> before = swept.boxes();
+  const auto before = swept.boxes();
   CHECK(update(swept, scene.start, scene.end) == Change::none);
   CHECK(update(swept, scene.start, scene.start + 0.3 * motion) == Change::none);
   CHECK(update(swept, scene.start, scene.end + 0.0003 * Positions(motion.rowwise().reverse())) == Change::none);
@@ -90,7 +90,7 @@ TEST_CASE("swept vertices: the boxes of vertices at rest stay, whatever the othe
   SweptVertices swept(*scene.surface);
   Positions start = scene.start;
   update(swept, start, start);
-  const std::vector<PackedBox> before = swept.boxes();
+  const auto before = swept.boxes();
   for (int edit = 0; edit < 5; ++edit) {
     Positions end = start;
     end.topRows(100).col(2).array() += 0.07;
@@ -108,7 +108,7 @@ TEST_CASE("swept vertices: a body in a frame of its own has small boxes, and lea
   SweptVertices swept(surface);
   update_in_frames(swept, surface, scene.start, scene.start - 2 * (scene.end - scene.start));  // as far as it goes
   update_in_frames(swept, surface, scene.start, scene.start + 1e-3 * (scene.end - scene.start).rowwise().reverse());
-  const std::vector<PackedBox> before = swept.boxes();
+  const auto before = swept.boxes();
   CHECK(update_in_frames(swept, surface, scene.start, scene.end) == Change::some);
   CHECK(swept.changed_bodies() == std::vector<unsigned char>{0, 1, 0});
   for (std::size_t vertex = 0; vertex < before.size(); ++vertex) {
