@@ -45,7 +45,7 @@ demo: build/venv-blender ## Lower a plant into a vase in Blender, write build/de
 test: ## Run every test on every Blender module
 	$(MAKE) --no-print-directory --jobs=2 DOWNLOAD_BESIDE=1 build/stiv_tests $(BLENDER_MODULES) build/stiv_sanitized_tests build/stiv_thread_tests
 	$(MAKE) --no-print-directory build/venv/stiv build/venv/lint $(BLENDER_VENVS)
-	build/venv/bin/python tools/run_tests.py native sanitizers threads windows window python blender lint
+	build/venv/bin/python tools/run_tests.py native sanitizers window blender python lint threads windows
 
 test-native: build/stiv_tests ## Run the core's own tests
 	build/venv/bin/python tools/run_tests.py native

@@ -2,7 +2,7 @@
 """Run the named parts of the tests, even if one of them fails, and print a summary at the end.
 
 Usage: run_tests.py PART...   with the parts native, sanitizers, threads, windows, python, blender, lint and
-window.
+window. They begin in the given order: with the longest ones first, all processors are busy to the end.
 """
 
 import os
