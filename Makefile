@@ -152,7 +152,7 @@ test-long: build/venv/stiv build/venv-blender build/stiv_thread_tests ## Run the
 	build/venv/bin/python tests/long/cluster_throughput.py
 	build/venv/bin/python tests/long/source_archive.py
 	STIV_LONG=1 build/venv/bin/python -m pytest -q tests/faults/test_memory.py tests/editing/test_random_deformations.py
-	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py tests/blender/animation/test_resolve_rig.py
+	STIV_LONG=1 build/venv-blender/bin/python -m pytest -q tests/fixtures/test_random_edits.py tests/fixtures/test_figures.py
 
 docs: build/venv-docs/ready ## Build the documentation site with the references of Python and C++: build/site/index.html
 	tools/install_debian_packages.sh tools/debian_packages_docs.txt

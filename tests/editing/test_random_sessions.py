@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Hundreds of random steps of editing sessions, each checked; tests/long/random_sessions.py does twenty thousand."""
+"""A thousand random steps of editing sessions, each checked; tests/long/random_sessions.py does twenty thousand."""
 
 from hypothesis import HealthCheck, settings
 from hypothesis.stateful import run_state_machine_as_test
@@ -8,7 +8,7 @@ from random_session import RandomSession
 from tests.examples import examples
 
 QUIET = settings(
-    max_examples=examples(20),
+    max_examples=examples(60),
     stateful_step_count=50,
     deadline=None,
     derandomize=True,
@@ -16,7 +16,7 @@ QUIET = settings(
 )
 
 
-def test_hundreds_of_random_steps_never_make_an_intersection():
+def test_a_thousand_random_steps_never_make_an_intersection():
     RandomSession.done = 0
     run_state_machine_as_test(RandomSession, settings=QUIET)
-    assert RandomSession.done >= examples(300)
+    assert RandomSession.done >= examples(1000)
