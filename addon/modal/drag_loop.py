@@ -31,6 +31,7 @@ MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a s
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 COMPARING_TIME = 5.0  # seconds that the comparison with the edit from the start may take after the confirmation
 FINISHING_TIME = 10.0  # seconds after the confirmation in which solves that meet obstacles may come closer
+PAUSE_TIME = 2 * FRAME  # seconds without a motion after which a state that was passed or tested in part is tested again
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 
@@ -238,10 +239,10 @@ class DragLoop:
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
                 return
-        if self.writer.is_incomplete and not self._pending and self._task is None:
+        if self.writer.is_incomplete and not self._pending and self._task is None and not self._moves(PAUSE_TIME):
             self.writer.is_due = True
         if self.writer.is_due and not self._solves_on():
-            self._write()
+            self._write(is_new=solves < self._solves)
         if self._confirmed and self.at_rest and not self._needs_refinement:
             self.progress = Progress.FINISHED
 
@@ -305,8 +306,11 @@ class DragLoop:
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
-        rests = time.perf_counter() - self._moved_at >= REST_TIME
-        return rests and self.progress is Progress.RUNNING and self._begun.interference
+        return self.progress is Progress.RUNNING and not self._moves(REST_TIME) and self._begun.interference
+
+    def _moves(self, seconds: float) -> bool:
+        """Whether the mouse has moved in the last seconds, and nothing is confirmed."""
+        return self.progress is Progress.RUNNING and time.perf_counter() - self._moved_at < seconds
 
     def _begin_solve(self) -> None:
         assert self.edit is not None
@@ -480,26 +484,28 @@ class DragLoop:
         if self._task is not None:
             self._task.cancel()
 
-    def _write(self) -> None:
+    def _write(self, is_new: bool) -> None:
+        """Write the accepted state: a new one without its complete test while the mouse moves.
+
+        Such a state is passed over if it fails. To search its path for one that passes would take several frames.
+        """
         assert self.edit is not None
         with self.writer.writing():
-            if self._drags_on():
-                if self.writer.write_beside(self.edit, self.result, self._start_solve):
+            if is_new and self._moves(REST_TIME):
+                if self.writer.write_beside(self.edit, self.result, self._start_next_solve):
                     return
                 self._end_solve()
             self.result = self.writer.write(self.edit, self.result)
 
-    def _drags_on(self) -> bool:
-        """Whether the next work is a solve for a new goal, and takes too long for the same frame."""
-        continues = self.progress is Progress.RUNNING and self._pending and self.state.request == self._begun
-        is_new = not same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
+    def _start_next_solve(self) -> None:
+        """Start the solve for a new goal, if there is one that takes too long for the same frame."""
         solved = self.result.timings["total"] if self.result is not None else 0.0
-        return continues and is_new and solved + self.writer.seconds > FITTING
-
-    def _start_solve(self) -> None:
-        self._begin_solve()
-        if self._task is not None:
-            self._task.start()
+        is_new = not same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
+        continues = self._pending and self.state.request == self._begun
+        if continues and is_new and solved + self.writer.seconds > FITTING:
+            self._begin_solve()
+            if self._task is not None:
+                self._task.start()
 
     def _end_solve(self) -> None:
         """Cancel a solve and wait for its end, which takes milliseconds; its goal is solved for again."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from ..stiv_blender import Edit, EditResult, WriteReport
 
-MAX_REJECTED = 2  # states in a row that fail in Blender's evaluation while a solve runs: the next one may pass
+MAX_REJECTED = 2  # states in a row that fail in Blender's evaluation while the mouse moves: the next one may pass
 
 
 class DragWriter:
@@ -22,7 +22,7 @@ class DragWriter:
         written: the result that the scene shows.
         turned: radians by which contact has turned a moving object in it.
         is_due: whether an accepted state is to be written.
-        is_incomplete: whether the last state was written beside a solve, and is still to be tested completely.
+        is_incomplete: whether the last state was written by `write_beside`, and is still to be tested completely.
         seconds: of the last writing; before the first one, of reading.
 
     """
@@ -63,7 +63,7 @@ class DragWriter:
         return result
 
     def write_beside(self, edit: Edit, result: EditResult | None, start_solve: Callable[[], None]) -> bool:
-        """Write the accepted state while the solve runs that `start_solve` starts.
+        """Write the accepted state; `start_solve` may start a solve, which then runs meanwhile.
 
         Returns whether the displayed state passed the test. A state that fails is not shown, and the solve continues:
         the path would have to be solved again before the view could change. A later state is written instead, or this

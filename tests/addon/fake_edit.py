@@ -141,6 +141,7 @@ class FakeEdit:
     def write_taken(self, taken: Any) -> Any:
         """Replaces writing a taken state, while the session may be busy."""
         self._called("write beside" if self.busy else "write")
+        time.sleep(self.writing)
         self.shown = taken.state
         if self.flips or taken.state in self.cutting:
             return None

@@ -32,3 +32,9 @@ def follow(drag: DragLoop, *positions: float) -> None:
     for x in positions:
         drag.handle(move_to(x))
         drag.tick()
+
+
+def pause(drag: DragLoop) -> None:
+    """Leave the mouse where it is until the drag is at rest."""
+    while not drag.at_rest:
+        drag.tick()

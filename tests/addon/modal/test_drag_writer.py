@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 from fake_edit import FakeEdit
-from scripted_drag import follow, new_drag
+from scripted_drag import follow, new_drag, pause
 
 from stiv_addon.modal import drag_loop
 from stiv_addon.modal.drag_loop import Progress
@@ -23,7 +23,7 @@ def test_the_next_solve_runs_while_a_state_is_written() -> None:
     assert drag.writer.turned == 0.5 and edit.busy  # with the solve for the third goal
     drag.tick()
     drag.tick()
-    assert edit.shown == 0.3 and drag.at_rest and drag.writer.written is drag.result
+    assert edit.shown == 0.3 and drag.writer.written is drag.result
 
 
 def test_a_solve_and_a_writing_that_fit_into_a_frame_run_in_sequence(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -89,14 +89,33 @@ def test_a_state_that_fails_the_test_is_not_shown_and_the_solve_continues() -> N
     assert edit.calls[5:] == ["drag", "write beside"] and edit.shown == drag.writer.written.path[-1] == 0.3
 
 
+def test_a_state_that_fails_the_test_is_passed_over_without_a_solve_beside_it_too() -> None:
+    edit = FakeEdit(cutting=(0.2,))
+    drag = new_drag(edit)
+    follow(drag, 10, 20)
+    assert edit.calls == ["drag", "write", "drag", "write", "write shown"] and edit.shown == 0.1
+    follow(drag, 30)
+    assert edit.shown == drag.writer.written.path[-1] == 0.3 and drag.writer.is_incomplete and not drag.at_rest
+
+
+def test_a_pause_tests_the_last_state_completely(monkeypatch: pytest.MonkeyPatch) -> None:
+    edit = FakeEdit()
+    drag = new_drag(edit)
+    follow(drag, 10)
+    drag.tick()
+    assert edit.calls == ["drag", "write"] and drag.writer.is_incomplete
+    monkeypatch.setattr(drag_loop, "PAUSE_TIME", 0.0)
+    drag.tick()
+    assert edit.calls == ["drag", "write", "write"] and not drag.writer.is_incomplete and drag.at_rest
+
+
 def test_the_last_state_is_written_completely_if_it_failed_beside_a_solve() -> None:
     edit = long_solves(cutting=(0.2,))
     drag = new_drag(edit)
     follow(drag, 10, 20, 30)
     edit.furthest = 0.0  # nothing more is accepted
-    for _ in range(4):
-        drag.tick()
-    assert edit.calls[-1] == "write" and drag.at_rest and edit.shown == edit.accepted
+    pause(drag)
+    assert edit.calls[-1] == "write" and edit.shown == edit.accepted
 
 
 def test_after_several_failures_the_path_is_solved_again() -> None:

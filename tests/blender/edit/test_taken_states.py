@@ -73,7 +73,7 @@ def test_a_taken_state_that_intersects_is_refused_and_the_last_one_comes_back() 
 
 def test_the_last_state_comes_back_while_the_session_solves_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is tested again; a scene that someone changed is refused."""
-    verdicts = iter([True, True, False, True])
+    verdicts = iter([True, True, False, False, False, True])
     monkeypatch.setattr(stiv.DeviationTest, "is_free", lambda *_: next(verdicts, True))
     cube = cube_above_floor()
     select(cube)
@@ -93,6 +93,39 @@ def test_the_last_state_comes_back_while_the_session_solves_on(monkeypatch: pyte
     assert edit.write().passed and cube.location.x == pytest.approx(1.8)
     edit.restore()
     assert not edit.write_shown() and cube.location.x == pytest.approx(0.3)
+
+
+def test_a_state_that_fails_by_rounding_is_written_a_few_roundings_nearer_to_the_last_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    cube = cube_above_floor()
+    select(cube)
+    edit = begin()
+    edit.drag(shift(x=1.0))
+    accepted = edit.controls
+    verdicts = iter([False, True])
+    monkeypatch.setattr(stiv.DeviationTest, "is_free", lambda *_: next(verdicts))
+    assert edit.write_taken(edit.take_state()) is not None and not list(verdicts)
+    assert 0 < 1.3 - cube.location.x < 1e-5 and np.array_equal(edit.controls, accepted)
+    verdicts = iter([True])
+    assert edit.write_shown() and 0 < 1.3 - cube.location.x < 1e-5
+    assert edit.write().passed and cube.location.x == pytest.approx(1.3, abs=1e-7)
+
+
+def test_a_complete_test_that_fails_by_rounding_accepts_a_state_that_passes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is no reason to stop early."""
+    cube = cube_above_floor()
+    select(cube)
+    edit = begin()
+    edit.drag(shift(x=1.0))
+    verdicts = iter([False, False, True])
+    monkeypatch.setattr(stiv.EditSession, "is_step_free", lambda *_: next(verdicts))
+    report = edit.write()
+    assert report.passed and not report.message and not list(verdicts)
+    assert 0 < 1.3 - cube.location.x < 2e-5
+    assert edit.moving_points(edit.controls)[:, 0].max() == pytest.approx(cube.location.x + 1, abs=1e-6)
+    monkeypatch.undo()
+    assert edit.drag(shift(x=2.0)).status == "reached" and edit.write().passed
 
 
 def test_a_search_decides_only_if_blender_shows_more_than_rounding(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,8 +2,9 @@
 """Writes accepted states into Blender, reads the evaluation back, and tests it."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import bpy
 import numpy as np
@@ -22,6 +23,7 @@ from stiv.blender.verify.verification import Verification, Verifier
 
 MAX_HALVINGS = 8  # of a step that fails the test in Blender's evaluation
 MAX_FLIP_RETRIES = 4  # times that an edit is solved again because Blender flipped triangles of bent faces
+NUDGES = (2.0**-19, 2.0**-17)  # of the largest coordinate: 16 to 128 times its rounding in single precision
 
 
 @dataclass(frozen=True)
@@ -68,13 +70,26 @@ class ShownState:
 
     Attributes:
         trail: that of the solver since then.
+        controls: (m, 3), as written: those accepted, or nudged ones.
         surface: (N, 3), as accepted.
         deviations: as in TakenState.
     """
 
     trail: Trail
+    controls: Floats
     surface: Floats
     deviations: stiv.DeviationTest | None
+
+
+def with_nudged(controls: Floats, last: Floats) -> Iterator[Floats]:
+    """Controls, (m, 3), and those that are a few roundings nearer to the last ones.
+
+    Where surfaces nearly touch, it depends on rounding whether they intersect in Blender's evaluation.
+    """
+    yield controls
+    for nudge in NUDGES:
+        reach = nudge * float(np.abs(controls).max(initial=0.0))
+        yield np.asarray(controls + np.clip(last - controls, -reach, reach), np.float64)
 
 
 class StateWriter:
@@ -100,12 +115,13 @@ class StateWriter:
         """
         if self._solver.trail is not taken.trail:
             return False
-        self.write(taken.controls)
-        if not self._is_free_beside(taken.surface, taken.deviations):
-            return False
-        self._solver.trail = Trail(taken.controls, taken.goal)
-        self._shown = ShownState(self._solver.trail, taken.surface, taken.deviations)
-        return True
+        for controls in with_nudged(taken.controls, taken.trail.written):
+            self.write(controls)
+            if self._is_free_beside(taken.surface, taken.deviations):
+                self._solver.trail = Trail(taken.controls, taken.goal)
+                self._shown = ShownState(self._solver.trail, controls, taken.surface, taken.deviations)
+                return True
+        return False
 
     def write_shown(self) -> bool:
         """Write the last state that passed again, while a job may use the session, and test it again.
@@ -115,7 +131,7 @@ class StateWriter:
         shown = self._shown
         if shown is None or shown.trail is not self._solver.trail:
             return False
-        self.write(shown.trail.written)
+        self.write(shown.controls)
         return self._is_free_beside(shown.surface, shown.deviations)
 
     def write_accepted(self, goal: Floats) -> WriteReport:
@@ -133,12 +149,23 @@ class StateWriter:
             solved_again = True
             verification = self._write_session()
         result = merge_results([call.result for call in self._solver.trail.calls]) if solved_again else None
-        if not verification.passed:
+        if not verification.passed and not self._passes_nudged(goal):
             return self._fall_back(goal, verification, result)
-        self._solver.trail = Trail(self._solver.session.controls, goal)
         session = self._solver.session
-        self._shown = ShownState(self._solver.trail, session.surface, session.deviation_test(self.threads_beside))
+        self._solver.trail = Trail(session.controls, goal)
+        deviations = session.deviation_test(self.threads_beside)
+        self._shown = ShownState(self._solver.trail, session.controls, session.surface, deviations)
         return WriteReport(True, result=result)
+
+    def _passes_nudged(self, goal: Floats) -> bool:
+        """Accept a state that differs by rounding, and write it; returns whether it passes the test."""
+        session, last = self._solver.session, self._solver.trail.written
+        for controls in islice(with_nudged(session.controls, last), 1, None):
+            session.edit(controls)
+            if self._write_session().passed:
+                self._solver.restart_from(session.controls, goal)
+                return True
+        return False
 
     def _write_session(self) -> Verification:
         self.write(self._solver.session.controls)
