@@ -66,6 +66,29 @@ def test_both_evaluations_are_blenders(edited: str, simplified: bool) -> None:
     check_equal(render, "ABCDFGH")
 
 
+@pytest.mark.parametrize("edited", ["", "Parent"])
+def test_copies_keep_the_inverses_of_parents_and_hooks(edited: str) -> None:
+    """Blender resets both if another object is assigned."""
+    parent, child, hooked = (add_cube(name, (4.0 * number, 1, 0)) for number, name in enumerate(("Parent", "C", "H")))
+    for ob in (parent, child):
+        add_modifier(ob, "SUBSURF", levels=1, render_levels=2)
+    bpy.context.view_layer.update()
+    child.parent, child.matrix_parent_inverse = parent, parent.matrix_world.inverted()
+    hook = add_modifier(hooked, "HOOK", object=parent)
+    hook.vertex_indices_set((0, 1, 2))
+    hook.matrix_inverse = parent.matrix_world.inverted() @ hooked.matrix_world
+    parent.location = (0.5, 1.5, 2)
+    bpy.context.view_layer.update()
+    if edited:
+        edit_mode(parent)
+    viewport, render = read("viewport"), read("render")
+    if edited:
+        bpy.ops.object.mode_set(mode="OBJECT")
+    check_equal(viewport, "CH")
+    as_rendered()
+    check_equal(render, "CH")
+
+
 def test_a_posed_armature_counts_in_edit_mode() -> None:
     arm = add("Arm", bpy.data.armatures.new("Arm"))
     select(arm)

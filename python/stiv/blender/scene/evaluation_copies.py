@@ -102,9 +102,7 @@ class EvaluationCopies:
         """Replace the references of a copy by references to copies."""
         bones = [] if twin.pose is None else twin.pose.bones
         for owner in (*twin.modifiers, *twin.constraints, *(each for bone in bones for each in bone.constraints)):
-            for item in owner.bl_rna.properties:
-                if item.type == "POINTER" and not item.is_readonly:
-                    self._replace_reference(owner, item.identifier, getattr(owner, item.identifier), setattr)
+            self._replace_pointers(owner)
             if isinstance(owner, bpy.types.NodesModifier):
                 for where, name, value in node_inputs(owner):
                     self._replace_reference(where, name, value, operator.setitem if where is owner else setattr)
@@ -115,9 +113,19 @@ class EvaluationCopies:
         for target in (each for owner in (twin, *copied) for each in find_driver_targets(owner)):
             self._replace_reference(target, "id", target.id, setattr)
         if twin.parent is not None and twin.parent.session_uid in self._copies:
+            inverse = twin.matrix_parent_inverse.copy()
             twin.parent = self._copies[twin.parent.session_uid]
+            twin.matrix_parent_inverse = inverse  # another parent has reset it
         if twin.instance_collection is not None:
             twin.instance_collection = self._collection(twin.instance_collection)
+
+    def _replace_pointers(self, owner: bpy.types.Modifier | bpy.types.Constraint) -> None:
+        inverse = owner.matrix_inverse.copy() if isinstance(owner, bpy.types.HookModifier) else None
+        for item in owner.bl_rna.properties:
+            if item.type == "POINTER" and not item.is_readonly:
+                self._replace_reference(owner, item.identifier, getattr(owner, item.identifier), setattr)
+        if isinstance(owner, bpy.types.HookModifier) and inverse is not None:
+            owner.matrix_inverse = inverse  # another object has reset it
 
     def _replace_reference(self, owner: Any, name: str, value: Any, put: Callable[[Any, str, Any], None]) -> None:
         if isinstance(value, bpy.types.Object) and value.session_uid in self._copies:
