@@ -36,10 +36,12 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
     return "" if report is None or report.passed else translate_error(report.message)
 
 
-def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str) -> None:
-    """Report the outcome of an edit, or the failure to write it."""
+def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: str = "") -> None:
+    """Report the outcome of an edit with what it left out, or the failure to write it."""
     if failure:
         say(operator, "WARNING", failure)
+    elif left_out:
+        say(operator, "WARNING", "; ".join(filter(None, (outcome, translate_error(left_out)))))
     elif outcome:
         say(operator, "INFO", outcome)
 

@@ -119,8 +119,17 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         steps: stiv_blender.Steps[stiv_blender.EditResult],
     ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
         result = self._run(context, steps)
+        return self._written(context, edit, result)
+
+    def _written(
+        self, context: bpy.types.Context, edit: stiv_blender.BlenderEdit, result: stiv_blender.EditResult
+    ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
+        """Write the accepted state, report what the edit left out, and end the edit."""
         report = edit.write()
         insert_keyframes(context, edit)
+        folds = edit.fold_note
+        if folds:
+            say(self, "WARNING", translate_error(folds))
         edit.finish()
         return report.result or result, report
 
@@ -140,13 +149,10 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         request = self.request(context.scene)
         edit, result = yield from apply_values(self, context, request, self.requested(), self._motion)
         try:
-            report = edit.write()
-            insert_keyframes(context, edit)
-            edit.finish()
+            return self._written(context, edit, result)
         except Exception as error:
             restore_after_error(edit, error)
             raise
-        return report.result or result, report
 
     def _values(self) -> tuple[object, ...]:
         return (*self.own_values(), *self.option_values())

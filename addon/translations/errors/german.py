@@ -135,6 +135,7 @@ MESSAGES = {
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",
     '{} depends on "{}"; select both': '{} hängt von "{}" ab; beide auswählen',
     "{} faces at joints may fold into each other": "{} Flächen an Gelenken dürfen sich ineinander falten",
+    "{} faces at joints cut into each other": "{} Flächen an Gelenken schneiden ineinander",
     "{} has a coordinate that is not finite; change it": "{} hat eine nicht endliche Koordinate; ändern",
     "{} has another active shape key": "{} hat einen anderen aktiven Formschlüssel",
     "{} has left {} Mode": "{} hat den Modus {} verlassen",

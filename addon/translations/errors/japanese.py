@@ -135,6 +135,7 @@ MESSAGES = {
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",
     '{} depends on "{}"; select both': "{} が「{}」に依存しています。両方を選択してください",
     "{} faces at joints may fold into each other": "関節の {} 面は互いに折り重なることがあります",
+    "{} faces at joints cut into each other": "関節の {} 面が互いに食い込んでいます",
     "{} has a coordinate that is not finite; change it": "{} に有限でない座標があります。変更してください",
     "{} has another active shape key": "{} のアクティブなシェイプキーが変わりました",
     "{} has left {} Mode": "{} は {} モードを終了しました",

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -273,6 +274,30 @@ def test_an_arm_collides_with_its_own_body() -> None:
     assert 80 < turned(rig.pose.bones["Arm.L"]) < 105
     assert pairs_of(*limbs(body)) == 0
     assert any("Body: " in note and "faces at joints may fold" in note for note in edit.start_notes)
+
+
+def faces_that_cut(ob: Any) -> int:
+    """Number of faces of an object that intersect each other in Blender's evaluation."""
+    shown = ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    shown.calc_loop_triangles()
+    corners = np.array([each.vertices for each in shown.loop_triangles], np.int32)
+    faces = np.array([each.polygon_index for each in shown.loop_triangles])
+    return len(np.unique(faces[stiv.find_intersections(evaluated(ob), corners)]))
+
+
+def test_an_edit_says_how_many_faces_at_joints_cut_into_each_other() -> None:
+    """They are not tested; all others are free. Those of the start do not count."""
+    rig, body, box = box_below_hand()
+    bpy.data.objects.remove(box)
+    select_bones(rig, "Forearm.L")
+    _, report, edit = apply("rotate", turn(np.radians(-20), "Z", (1, 0, 1.35)))
+    assert report.passed and edit.fold_note == "" and faces_that_cut(body) == 0
+    _, report, edit = apply("rotate", turn(np.radians(-120), "Z", (1, 0, 1.35)))
+    assert report.passed
+    found = re.fullmatch(r"Body: (\d+) faces at joints cut into each other", edit.fold_note)
+    assert found and 0 < int(found[1]) == pytest.approx(faces_that_cut(body), abs=4)  # Blender may flip diagonals
+    again = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
+    assert again.fold_note == ""
 
 
 def test_the_region_of_a_joint_is_adjustable() -> None:

@@ -8,7 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+import stiv
 from stiv.blender.scene.arrays import Flags, Floats, Indices
+from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
@@ -106,6 +108,45 @@ def joint_note(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> str
         return ""
     name, faces = folding[0][0].owner.name, sum(each.faces for _, each in folding)
     return f"{name}: {faces:,} faces at joints may fold into each other"
+
+
+def fold_note(
+    assembly: Assembly, surfaces: Sequence[int], untested: frozenset[tuple[str, int, int]], q: Floats, threads: int = 0
+) -> str:
+    """The message on untested faces that cut into each other at positions `q`, (N, 3), and did not at the start.
+
+    "" if there are none. surfaces: numbers of the meshes that bones bend. untested: pairs of their parts.
+    """
+    for name in dict.fromkeys(assembly.meshes[number].owner.name for number in surfaces):
+        numbers = [number for number in surfaces if assembly.meshes[number].owner.name == name]
+        parts = frozenset((a, b) for owner, a, b in untested if owner == name)
+        found = _folds(assembly, numbers, parts, q, threads)
+        folded = found and found - _folds(assembly, numbers, parts, assembly.positions, threads)
+        if folded:
+            return f"{name}: {len(frozenset().union(*folded)):,} faces at joints cut into each other"
+    return ""
+
+
+def _folds(
+    assembly: Assembly, numbers: Sequence[int], untested: frozenset[tuple[int, int]], q: Floats, threads: int
+) -> set[frozenset[int]]:
+    """Pairs of faces of one mesh that intersect at positions `q`, (N, 3), in parts that are not tested."""
+    meshes = [assembly.meshes[number] for number in numbers]
+    if not untested:
+        return set()
+    rows = [np.arange(len(each.local)) if each.cropped is None else each.cropped.vertices for each in meshes]
+    points = np.zeros((max(int(each.max(initial=-1)) for each in rows) + 1, 3))
+    for number, each in zip(numbers, rows, strict=True):
+        points[each] = q[assembly.vertices(number)]
+    corners = np.concatenate([each[mesh.triangles] for each, mesh in zip(rows, meshes, strict=True)])
+    parts = np.repeat([mesh.part for mesh in meshes], [len(mesh.triangles) for mesh in meshes]).tolist()
+    faces = np.concatenate([mesh.faces for mesh in meshes]).tolist()
+    pairs = stiv.find_intersections(points, corners, threads=threads).tolist()
+    return {
+        frozenset((faces[a], faces[b]))
+        for a, b in pairs
+        if not untested.isdisjoint({(parts[a], parts[b]), (parts[b], parts[a])})
+    }
 
 
 def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 import stiv
 from stiv.blender.controls.bone_set import BoneWriter, DressedWriter
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.increments import Path, split_motion
@@ -131,6 +132,19 @@ class BlenderEdit:
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
         notes = tuple(each.note for each in self.control_sets if each.note)
         return (*dropped, *intersection_notes(self._solver.intersecting), *notes)
+
+    @property
+    def fold_note(self) -> str:
+        """The message on faces at joints that cut into each other now, and did not at the start; "" without any.
+
+        Edits of bones do not test them (`EditSettings.joint_region`).
+        """
+        if self._unguarded is not None:
+            return ""
+        posed = [each.posed for each in self.control_sets if each.posed is not None]
+        threads = self._settings.threads
+        notes = (fold_note(self.assembly, each.surfaces, each.untested, self.surface, threads) for each in posed)
+        return next(filter(None, notes), "")
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:
