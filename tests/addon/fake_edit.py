@@ -65,6 +65,7 @@ class FakeEdit:
     touching: bool = False
     busy: bool = False
     start_digest = "start"
+    fold_note = ""
     controls = ()
 
     @property

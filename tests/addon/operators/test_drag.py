@@ -248,6 +248,7 @@ def test_the_overlay_shows_only_the_result_that_the_scene_shows(
     calls: list[str] = []
     for name in ("show_edit", "end_edit"):
         monkeypatch.setattr(drag.display, name, lambda *given, name=name: calls.append(name))
+    edit.taking = False  # written completely at once
     monkeypatch.setattr(edit, "write", lambda: SimpleNamespace(passed=True, message=message, result=None))
     operator.modal(context, event("MOUSEMOVE", "NOTHING", 50))
     operator.modal(context, event("TIMER"))
