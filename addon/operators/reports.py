@@ -36,12 +36,18 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
     return "" if report is None or report.passed else translate_error(report.message)
 
 
+def left_out_text(context: bpy.types.Context, edit: stiv_blender.Edit) -> str:
+    """What an edit leaves out of its guarantee: faces at joints, and objects that the next frame resets."""
+    is_keyed = context.scene.tool_settings.use_keyframe_insert_auto
+    return "; ".join(map(translate_error, filter(None, (edit.fold_note, "" if is_keyed else edit.reset_note))))
+
+
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: str = "") -> None:
     """Report the outcome of an edit with what it left out, or the failure to write it."""
     if failure:
         say(operator, "WARNING", failure)
     elif left_out:
-        say(operator, "WARNING", "; ".join(filter(None, (outcome, translate_error(left_out)))))
+        say(operator, "WARNING", "; ".join(filter(None, (outcome, left_out))))
     elif outcome:
         say(operator, "INFO", outcome)
 

@@ -65,7 +65,7 @@ class FakeEdit:
     touching: bool = False
     busy: bool = False
     start_digest = "start"
-    fold_note = ""
+    fold_note = reset_note = ""
     controls = ()
 
     @property

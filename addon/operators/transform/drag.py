@@ -38,7 +38,7 @@ from ...translations import translate, translate_error
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
 from ..repair import decisions
-from ..reports import outcome_text, report_error, report_outcome, report_raised, write_failure
+from ..reports import left_out_text, outcome_text, report_error, report_outcome, report_raised, write_failure
 from . import drag_results
 from .constraint import constraint_of
 from .move import STIV_OT_move
@@ -235,7 +235,7 @@ class DragOperator(Mixin):
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             outcome = translate("stopped") if drag.stopped else outcome_text(result)
-            report_outcome(self, outcome, write_failure(report), edit.fold_note)
+            report_outcome(self, outcome, write_failure(report), left_out_text(context, edit))
             edit.finish()
         store_proportional(context, drag.state.proportional)
         store_snap(context, drag.state)

@@ -20,7 +20,7 @@ from ...transform.view import Vector
 from ...translations import translate, translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
-from ..reports import outcome_text, report_error, report_outcome, report_raised, say, write_failure
+from ..reports import left_out_text, outcome_text, report_error, report_outcome, report_raised, say, write_failure
 from ..task_operator import TaskOperator
 from . import drag_results, redo_limit
 from .constraint import Constraint, free_directions
@@ -127,9 +127,9 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         """Write the accepted state, report what the edit left out, and end the edit."""
         report = edit.write()
         insert_keyframes(context, edit)
-        folds = edit.fold_note
-        if folds:
-            say(self, "WARNING", translate_error(folds))
+        left_out = left_out_text(context, edit)
+        if left_out:
+            say(self, "WARNING", left_out)
         edit.finish()
         return report.result or result, report
 
@@ -173,8 +173,8 @@ def _reused(
 
 
 def insert_keyframes(context: bpy.types.Context, edit: stiv_blender.Edit) -> None:
-    """Insert keyframes for posed bones if Auto Keying is on."""
-    if context.mode == "POSE" and context.scene.tool_settings.use_keyframe_insert_auto:
+    """Insert keyframes for posed bones and placed objects if Auto Keying is on."""
+    if context.mode in ("OBJECT", "POSE") and context.scene.tool_settings.use_keyframe_insert_auto:
         edit.insert_keyframes(context)
 
 

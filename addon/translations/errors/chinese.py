@@ -2,6 +2,7 @@
 """Simplified Chinese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 triangle has no area": "1 个三角形没有面积",
     "1 vertex follows": "1 个顶点跟随",
@@ -69,6 +70,7 @@ MESSAGES = {
     "its shape keys hide edits; apply all shape keys": "其形态键会掩盖编辑；请应用所有形态键",
     "its structure has changed; use Undo instead": "其结构已改变；请改用撤销",
     "its transform is animated; clear the animation": "其变换有动画；请清除动画",
+    "its transform is driven; delete the drivers": "其变换由驱动器控制；请删除驱动器",
     "its transform is locked; unlock it": "其变换已锁定；请解锁",
     "its transform is not finite; clear its location and scale": "其变换不是有限值；请清除位置和缩放",
     "its vertices carry instances; make them real": "其顶点带有实例；请使其独立",
@@ -134,8 +136,8 @@ MESSAGES = {
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",
     '{} depends on "{}"; select both': "{}依赖于“{}”；请同时选择两者",
-    "{} faces at joints may fold into each other": "关节处的 {} 个面可以相互折叠",
     "{} faces at joints cut into each other": "关节处的 {} 个面相互切入",
+    "{} faces at joints may fold into each other": "关节处的 {} 个面可以相互折叠",
     "{} has a coordinate that is not finite; change it": "{} 有非有限坐标；请更改",
     "{} has another active shape key": "{} 的活动形态键已改变",
     "{} has left {} Mode": "{} 已离开 {} 模式",

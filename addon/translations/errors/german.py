@@ -2,6 +2,7 @@
 """German messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 triangle has no area": "1 Dreieck hat keine Fläche",
     "1 vertex follows": "1 Vertex folgt",
@@ -69,6 +70,7 @@ MESSAGES = {
     "its shape keys hide edits; apply all shape keys": "Formschlüssel verdecken Änderungen; alle anwenden",
     "its structure has changed; use Undo instead": "die Struktur hat sich geändert; stattdessen Rückgängig verwenden",
     "its transform is animated; clear the animation": "die Transformation ist animiert; Animation löschen",
+    "its transform is driven; delete the drivers": "die Transformation hat Treiber; Treiber löschen",
     "its transform is locked; unlock it": "die Transformation ist gesperrt; entsperren",
     "its transform is not finite; clear its location and scale": "die Transformation ist nicht endlich; Position und Skalierung löschen",
     "its vertices carry instances; make them real": "die Vertices tragen Instanzen; real machen",
@@ -134,8 +136,8 @@ MESSAGES = {
     "{} cuts {}, {} faces, may only part": "{} schneidet {}, {} Flächen, dürfen sich nur trennen",
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",
     '{} depends on "{}"; select both': '{} hängt von "{}" ab; beide auswählen',
-    "{} faces at joints may fold into each other": "{} Flächen an Gelenken dürfen sich ineinander falten",
     "{} faces at joints cut into each other": "{} Flächen an Gelenken schneiden ineinander",
+    "{} faces at joints may fold into each other": "{} Flächen an Gelenken dürfen sich ineinander falten",
     "{} has a coordinate that is not finite; change it": "{} hat eine nicht endliche Koordinate; ändern",
     "{} has another active shape key": "{} hat einen anderen aktiven Formschlüssel",
     "{} has left {} Mode": "{} hat den Modus {} verlassen",

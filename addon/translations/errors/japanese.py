@@ -2,6 +2,7 @@
 """Japanese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 triangle has no area": "面積のない三角形が 1 個あります",
     "1 vertex follows": "1 頂点が従います",
@@ -69,6 +70,7 @@ MESSAGES = {
     "its shape keys hide edits; apply all shape keys": "シェイプキーのため編集が見えません。すべて適用してください",
     "its structure has changed; use Undo instead": "構造が変わりました。代わりに「元に戻す」を使ってください",
     "its transform is animated; clear the animation": "トランスフォームがアニメーションしています。アニメーションをクリアしてください",
+    "its transform is driven; delete the drivers": "トランスフォームがドライバーで制御されています。ドライバーを削除してください",
     "its transform is locked; unlock it": "トランスフォームがロックされています。解除してください",
     "its transform is not finite; clear its location and scale": "トランスフォームが有限ではありません。位置とスケールをクリアしてください",
     "its vertices carry instances; make them real": "頂点にインスタンスがあります。実体化してください",
@@ -134,8 +136,8 @@ MESSAGES = {
     "{} cuts {}, {} faces, may only part": "{} と {} が交差、面 {}。離れることだけできます",
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",
     '{} depends on "{}"; select both': "{} が「{}」に依存しています。両方を選択してください",
-    "{} faces at joints may fold into each other": "関節の {} 面は互いに折り重なることがあります",
     "{} faces at joints cut into each other": "関節の {} 面が互いに食い込んでいます",
+    "{} faces at joints may fold into each other": "関節の {} 面は互いに折り重なることがあります",
     "{} has a coordinate that is not finite; change it": "{} に有限でない座標があります。変更してください",
     "{} has another active shape key": "{} のアクティブなシェイプキーが変わりました",
     "{} has left {} Mode": "{} は {} モードを終了しました",

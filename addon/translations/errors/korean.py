@@ -2,6 +2,7 @@
 """Korean messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 triangle has no area": "넓이가 없는 삼각형 1개",
     "1 vertex follows": "버텍스 1개가 따라감",
@@ -69,6 +70,7 @@ MESSAGES = {
     "its shape keys hide edits; apply all shape keys": "셰이프 키가 편집을 가림; 모두 적용하세요",
     "its structure has changed; use Undo instead": "구조가 바뀜; 대신 실행 취소를 사용하세요",
     "its transform is animated; clear the animation": "변환이 애니메이션됨; 애니메이션을 지우세요",
+    "its transform is driven; delete the drivers": "변환이 드라이버로 제어됨; 드라이버를 삭제하세요",
     "its transform is locked; unlock it": "변환이 잠겨 있음; 잠금을 해제하세요",
     "its transform is not finite; clear its location and scale": "변환이 유한하지 않음; 위치와 축척을 지우세요",
     "its vertices carry instances; make them real": "버텍스에 인스턴스가 있음; 실체화하세요",
@@ -134,8 +136,8 @@ MESSAGES = {
     "{} cuts {}, {} faces, may only part": "{} 교차 {}, 면 {}개, 떨어질 수만 있음",
     "{} cuts {}, {} faces{}": "{} 교차 {}, 면 {}개{}",
     '{} depends on "{}"; select both': '{}이(가) "{}"에 의존함; 둘 다 선택하세요',
-    "{} faces at joints may fold into each other": "관절의 면 {}개는 서로 접힐 수 있음",
     "{} faces at joints cut into each other": "관절의 면 {}개가 서로 파고듦",
+    "{} faces at joints may fold into each other": "관절의 면 {}개는 서로 접힐 수 있음",
     "{} has a coordinate that is not finite; change it": "{}에 유한하지 않은 좌표가 있음; 바꾸세요",
     "{} has another active shape key": "{}의 활성 셰이프 키가 바뀜",
     "{} has left {} Mode": "{}이(가) {} 모드를 나감",

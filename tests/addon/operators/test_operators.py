@@ -53,7 +53,7 @@ class RecordingEdit:
     begun: Any = None
     summary = SimpleNamespace(warnings=())
     start_notes = ()
-    fold_note = ""
+    fold_note = reset_note = ""
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()
     failing: Exception | None = None

@@ -10,6 +10,7 @@ bpy = pytest.importorskip("bpy")
 
 import bmesh  # noqa: E402
 
+from stiv.blender.scene.animation_curves import own_curves  # noqa: E402
 from stiv.blender.scripts.replaying import replay  # noqa: E402
 from stiv.edit_scripts import parse_edit_script  # noqa: E402
 
@@ -291,3 +292,17 @@ def test_files_of_the_first_version_keep_their_response() -> None:
     assert moving.rotation_euler.z != 0
     items = bpy.context.scene.stiv.bl_rna.properties["object_response"].enum_items
     assert {item.identifier: item.value for item in items} == {"slide": 0, "deform": 1, "slide_and_turn": 2}
+
+
+def test_auto_keying_inserts_keyframes_for_objects() -> None:
+    """Blender's own tools do so; the wall stops the box before."""
+    cube = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    bpy.context.scene.frame_set(7)
+    assert bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(3, 0, 0)) == {"FINISHED"}
+    reached = cube.location.x
+    cube.location.x = 0.0
+    bpy.context.scene.frame_set(8)
+    assert cube.location.x == reached == pytest.approx(WALL_FACE - 0.5, abs=0.01)
+    paths = {curve.data_path for curve in own_curves(cube)}
+    assert paths == {"location"}

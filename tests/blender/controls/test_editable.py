@@ -73,19 +73,22 @@ def test_unknown_kind() -> None:
     refused("kind", kind="shear")
 
 
-def test_animated_placement() -> None:
-    cube = add_cube("Cube")
+def test_keyed_placement() -> None:
+    """It may move as with Blender's own tools, and the render shows the keyframes. It does not yield."""
+    cube, other = add_cube("Cube"), add_cube("Other", (3, 0, 0))
     cube.keyframe_insert("location", frame=1)
     select(cube)
-    refused("Cube: its transform is animated; clear the animation")
+    accepted()
     accepted(DEFORM)
+    select(other)
+    refused("Cube: its transform is animated; clear the animation", EditSettings(roles={"Cube": "rigid"}))
 
 
 def test_driven_placement() -> None:
     cube = add_cube("Cube")
     cube.driver_add("rotation_euler", 2)
     select(cube)
-    refused("Cube: its transform is animated")
+    refused("Cube: its transform is driven; delete the drivers")
 
 
 def test_animation_of_other_properties_is_accepted() -> None:

@@ -56,6 +56,21 @@ def test_a_free_result_is_left_exactly() -> None:
     assert snapshot() == expected
 
 
+def test_keyframes_of_objects_follow_the_correction_with_auto_keying() -> None:
+    add_wall()
+    box = add_cube("Box")
+    box.keyframe_insert("location")
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+
+    def move() -> None:
+        box.location = (9, 0.5, 0)
+        box.keyframe_insert("location")
+
+    assert corrected(move).corrected
+    bpy.context.scene.frame_set(bpy.context.scene.frame_current)
+    assert box.location.x == pytest.approx(WALL - 1, abs=0.02) and check_scene(bpy.context).pairs == ()
+
+
 def test_an_object_turned_and_scaled_at_once_is_corrected() -> None:
     add_wall()
     box = add_cube("Box", (1, 0, 0))

@@ -16,6 +16,7 @@ from stiv.blender.controls.garments import Garment, stacked_weights
 from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
+from stiv.blender.scene.animation_curves import keyframe_options
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -280,19 +281,6 @@ class DressedWriter:
         for writer, _ in self.writers:
             if isinstance(writer, BoneWriter):
                 writer.insert_keyframes(context)
-
-
-def keyframe_options(context: bpy.types.Context) -> set[str]:
-    """How Auto Keying inserts keyframes, by the preferences and tool settings."""
-    edit, tools = context.preferences.edit, context.scene.tool_settings
-    chosen = {
-        "INSERTKEY_NEEDED": getattr(edit, "use_auto_keyframe_insert_needed", False),
-        "INSERTKEY_AVAILABLE": getattr(edit, "use_keyframe_insert_available", False),
-        "INSERTKEY_VISUAL": edit.use_visual_keying,
-        "INSERTKEY_REPLACE": tools.auto_keying_mode == "REPLACE_KEYS",
-        "INSERTKEY_CYCLE_AWARE": tools.use_keyframe_cycle_aware,
-    }
-    return {name for name, is_on in chosen.items() if is_on}
 
 
 def as_controls(scalars: Floats) -> Floats:

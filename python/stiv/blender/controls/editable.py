@@ -7,13 +7,14 @@ import bpy
 import numpy as np
 
 from stiv import InputError
-from stiv.blender.scene.animation_curves import animated_paths
+from stiv.blender.scene.animation_curves import driven_paths, keyed_paths
 from stiv.blender.scene.arrays import as_matrix
 from stiv.blender.scene.references import type_name
 
 TRANSFORM_PATHS = ("location", "rotation", "scale", "delta_")
 REASONS = {
     "animated": "its transform is animated; clear the animation",
+    "driven": "its transform is driven; delete the drivers",
     "constraint": 'constraint "{other}" determines its transform; disable it',
     "linked": "it is linked; make a library override of it",
     "linked data": "its {kind} is linked from another file; make it local",
@@ -25,18 +26,29 @@ REASONS = {
 }
 
 
-def check_placement(ob: bpy.types.Object) -> None:
-    """Refuse an object whose transform cannot be edited. Raises InputError."""
+def check_placement(ob: bpy.types.Object, may_be_keyed: bool = False) -> None:
+    """Refuse an object whose transform cannot be edited. Raises InputError.
+
+    may_be_keyed: accept keyframes of the transform. As with Blender's own tools, a change then lasts until the frame
+    changes, or until it is keyed.
+    """
     if ob.library is not None:
         raise _refusal(ob, "linked")
     if ob.override_library is not None and ob.override_library.is_system_override:
         raise _refusal(ob, "system override")
     _check_scale(ob)
-    if any(path.startswith(TRANSFORM_PATHS) for path in animated_paths(ob)):
+    if any(path.startswith(TRANSFORM_PATHS) for path in driven_paths(ob)):
+        raise _refusal(ob, "driven")
+    if is_keyed(ob) and not may_be_keyed:
         raise _refusal(ob, "animated")
     check_unconstrained(ob)
     if ob.type == "META":
         raise _refusal(ob, "metaball")
+
+
+def is_keyed(ob: bpy.types.Object) -> bool:
+    """Has the transform of an object keyframes?"""
+    return any(path.startswith(TRANSFORM_PATHS) for path in keyed_paths(ob))
 
 
 def check_unconstrained(ob: bpy.types.Object) -> None:

@@ -42,6 +42,11 @@ class ObjectTransform:
         size = np.cbrt(abs(np.linalg.det(parent_matrix)))
         return is_rotation(parent_matrix / size * np.sign(np.linalg.det(parent_matrix)))
 
+    def changed(self, ob: bpy.types.Object) -> list[str]:
+        """Names of the properties that differ from those at the start."""
+        start = {"location": self.location, self.rotation_property: self.rotation, "scale": self.scale}
+        return [name for name, values in start.items() if tuple(getattr(ob, name)) != values]
+
     def restore(self, ob: bpy.types.Object) -> None:
         """Restore location, rotation and scale exactly."""
         ob.location = self.location

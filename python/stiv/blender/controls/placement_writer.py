@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.motion import ROUNDING
 from stiv.blender.controls.object_transform import ObjectTransform, write_transform
 from stiv.blender.controls.rotations import affine_about, remove_rounding, rotation_matrix
 from stiv.blender.controls.transform_locks import restore_locked
+from stiv.blender.scene.animation_curves import keyframe_options
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.references import ObjectReference
 
@@ -47,6 +49,17 @@ class PlacementWriter:
         """Restore location, rotation and scale."""
         for ob, start in self._objects():
             start.restore(ob)
+
+    def changed_with_keyframes(self) -> list[str]:
+        """Names of the objects with keyframes whose transform has changed since the start."""
+        return [ob.name for ob, start in self._objects() if is_keyed(ob) and start.changed(ob)]
+
+    def insert_keyframes(self, context: bpy.types.Context) -> None:
+        """Insert keyframes for what has changed since the start."""
+        options = keyframe_options(context)
+        for ob, start in self._objects():
+            for name in start.changed(ob):
+                ob.keyframe_insert(name, group="Object Transforms", options=options)
 
     def _objects(self) -> list[tuple[bpy.types.Object, ObjectTransform]]:
         return [(reference.find(), start) for reference, start in zip(self.references, self.starts, strict=True)]

@@ -125,7 +125,7 @@ def _topmost(participants: list[Participant]) -> list[Participant]:
 
 def _family(participant: Participant) -> RigidGroup:
     root = participant.reference.find()
-    check_placement(root)
+    check_placement(root, may_be_keyed=participant.selected)
     for child in root.children_recursive:
         check_unconstrained(child)
     return RigidGroup((participant,), frozenset({root.name, *(child.name for child in root.children_recursive)}))

@@ -18,6 +18,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
+from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.edit.increments import Path, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
@@ -145,6 +146,13 @@ class BlenderEdit:
         threads = self._settings.threads
         notes = (fold_note(self.assembly, each.surfaces, each.untested, self.surface, threads) for each in posed)
         return next(filter(None, notes), "")
+
+    @property
+    def reset_note(self) -> str:
+        """The message on a placed object that its keyframes reset at the next frame; "" without any."""
+        writers = [each.writer for each in self.control_sets if isinstance(each.writer, PlacementWriter)]
+        keyed = [name for writer in writers for name in writer.changed_with_keyframes()]
+        return f"{keyed[0]}: the next frame resets it to its keyframes; key it" if keyed else ""
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:
@@ -402,9 +410,9 @@ class BlenderEdit:
         self._solver.keep_session()
 
     def insert_keyframes(self, context: bpy.types.Context) -> None:
-        """Insert keyframes for posed bones, as Auto Keying does. Other controls get none."""
+        """Insert keyframes for posed bones and placed objects, as Auto Keying does. Other controls get none."""
         for control_set in self.control_sets:
-            if isinstance(control_set.writer, BoneWriter | DressedWriter):
+            if isinstance(control_set.writer, BoneWriter | DressedWriter | PlacementWriter):
                 control_set.writer.insert_keyframes(context)
 
     def is_shown(self) -> bool:

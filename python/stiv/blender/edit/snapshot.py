@@ -10,6 +10,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
 from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
@@ -67,8 +68,8 @@ def take_snapshot(
 
     adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface.
     """
-    if settings.guard == "auto" and any(each.role == "bones" and _is_animated(each) for each in participants):
-        settings = replace(settings, guard="viewport")  # the render shows the keyframes, not the present pose
+    if settings.guard == "auto" and any(map(_is_animated, participants)):
+        settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
     scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
@@ -92,7 +93,11 @@ def take_snapshot(
 
 
 def _is_animated(participant: Participant) -> bool:
-    animation = participant.reference.find().animation_data
+    """Do keyframes determine what the edit changes?"""
+    ob = participant.reference.find()
+    if participant.role != "bones":
+        return participant.role == "rigid" and is_keyed(ob)
+    animation = ob.animation_data
     return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
 
 

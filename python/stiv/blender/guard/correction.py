@@ -93,6 +93,9 @@ def correct_after_tool_steps(
     except BaseException:
         _restore(context, wanted, chosen)
         raise
+    if context.scene.tool_settings.use_keyframe_insert_auto:  # the tool has keyed what it reached
+        for outcome in outcomes:
+            outcome.edit.insert_keyframes(context)
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
     message = next((outcome.message for outcome in outcomes if outcome.message), "")
     cut = any(outcome.cut for outcome in outcomes)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds animated and driven properties."""
+"""Finds animated and driven properties, and how Auto Keying inserts keyframes."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -7,15 +7,17 @@ from typing import Any
 import bpy
 
 
-def animated_paths(data: bpy.types.ID) -> set[str]:
-    """Data paths of all curves and drivers of a data-block; muted ones are left out."""
+def driven_paths(data: bpy.types.ID) -> set[str]:
+    """Data paths of all drivers of a data-block; muted ones are left out."""
     animation = getattr(data, "animation_data", None)
-    if animation is None:
-        return set()
-    paths = {driver.data_path for driver in animation.drivers if not driver.mute}
-    for action in _actions(animation):
-        paths.update(curve.data_path for curve in channel_curves(action) if not curve.mute)
-    return paths
+    return set() if animation is None else {driver.data_path for driver in animation.drivers if not driver.mute}
+
+
+def keyed_paths(data: bpy.types.ID) -> set[str]:
+    """Data paths of all curves of a data-block; muted ones are left out."""
+    animation = getattr(data, "animation_data", None)
+    actions = () if animation is None else _actions(animation)
+    return {curve.data_path for action in actions for curve in channel_curves(action) if not curve.mute}
 
 
 def _actions(animation: bpy.types.AnimData) -> Iterator[bpy.types.Action]:
@@ -49,3 +51,16 @@ def own_curves(owner: bpy.types.ID) -> Sequence[Any]:
     strips = [strip for layer in animation.action.layers for strip in layer.strips]
     bags = [strip.channelbag(animation.action_slot) for strip in strips if animation.action_slot is not None]
     return [curve for bag in bags if bag is not None for curve in bag.fcurves]
+
+
+def keyframe_options(context: bpy.types.Context) -> set[str]:
+    """How Auto Keying inserts keyframes, by the preferences and tool settings."""
+    edit, tools = context.preferences.edit, context.scene.tool_settings
+    chosen = {
+        "INSERTKEY_NEEDED": getattr(edit, "use_auto_keyframe_insert_needed", False),
+        "INSERTKEY_AVAILABLE": getattr(edit, "use_keyframe_insert_available", False),
+        "INSERTKEY_VISUAL": edit.use_visual_keying,
+        "INSERTKEY_REPLACE": tools.auto_keying_mode == "REPLACE_KEYS",
+        "INSERTKEY_CYCLE_AWARE": tools.use_keyframe_cycle_aware,
+    }
+    return {name for name, is_on in chosen.items() if is_on}
