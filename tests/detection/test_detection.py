@@ -241,3 +241,26 @@ SHAPE = np.zeros((4, 3))
 def test_bad_input_is_named(call: object, message: str) -> None:
     with pytest.raises(stiv.InputError, match=message.replace("(", r"\(")):
         call()  # type: ignore[operator]
+
+
+def cube_beside_wall() -> tuple[np.ndarray, np.ndarray]:
+    """Triangles and vertices of a cube of edge 1 around the origin, and of a wall at x = 2."""
+    corners = np.array([(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3), (8, 9, 10, 11)]
+    triangles = np.array([triangle for a, b, c, d in quads for triangle in ((a, b, c), (a, c, d))])
+    return triangles, np.vstack([corners, [(2, -3, -3), (2, 3, -3), (2, 3, 3), (2, -3, 3)]])
+
+
+@pytest.mark.parametrize("exponent", [3, 9, 13, 14, 14.5, 15, 15.3, 16, 20, 30, 60])
+@pytest.mark.parametrize("separation", [0.0, 1e-3])
+def test_steps_far_longer_than_their_start_pass_through_nothing(exponent: float, separation: float) -> None:
+    """The rounding error of the step exceeds the distance at the start, so that doubles do not know the side there."""
+    triangles, start = cube_beside_wall()
+    end = start.copy()
+    end[:8, 0] += 10.0**exponent
+    events = stiv.Detector(triangles).find(start, end, separation)
+    assert len(events) and not stiv.is_step_free(triangles, start, end, separation)
+    if exponent <= 15:  # beyond, the cube is flat in the end
+        assert events.time.min() == pytest.approx((1.5 - separation) * 10.0**-exponent, rel=0.02)
+        end[:8, 0] = start[:8, 0] - 10.0**exponent
+        assert stiv.is_step_free(triangles, start, end, separation)

@@ -57,9 +57,35 @@ bool starts_within(EventKind kind, const PairMotion& motion, const RelativeMotio
   return witness(kind, finer.start).distance <= DoubleDouble(separation) + 4 * finer.rounding;
 }
 
+/// Is the distance at the start clear of rounding there, but not of the rounding of a motion that is far longer?
+/// [docs/mathematics.md, "Touching at the start"]
+bool is_lost_in_motion(const RelativeMotion<double>& motion, double distance) {
+  constexpr double clear = 1024;
+  if (distance > 8 * motion.rounding) return false;
+  double size = 0;
+  for (const Vector3& x : motion.start) size = std::max(size, x.cwiseAbs().maxCoeff());
+  return distance > clear * Precision<double>::gap * size;
+}
+
+/// The contact of such a pair, in double-doubles: doubles cannot tell on which side it starts.
+std::optional<Contact> contact_of_long_motion(double threshold, const RelativeMotion<double>& relative,
+                                              const PairMotion& motion, const Witness& at_start, double latest) {
+  const RelativeMotion<DoubleDouble> finer(relative.kind, motion);
+  const bool is_lost_again = DoubleDouble(at_start.distance - threshold) <= 8 * finer.rounding;
+  if (is_lost_again) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
+  const auto found = advance<DoubleDouble>(finer, threshold, 0, latest);
+  if (!found) return std::nullopt;
+  const double time = rounded_down(found->time);
+  const VectorOf<DoubleDouble>& n = found->last_normal;
+  const Vector3 normal(n[0].high, n[1].high, n[2].high);
+  return contact_of(relative, {time, witness(relative.kind, relative.at(time)), normal}, at_start.distance);
+}
+
 std::optional<Contact> contact_within(double threshold, const RelativeMotion<double>& relative,
                                       const PairMotion& motion, const Witness& at_start, double latest) {
   double time = 0;
+  if (is_lost_in_motion(relative, at_start.distance))
+    return contact_of_long_motion(threshold, relative, motion, at_start, latest);
   if (at_start.distance <= threshold + 4 * relative.rounding) {
     time = parting_time(relative, at_start.distance, threshold);
     if (time >= 1) return std::nullopt;
