@@ -487,7 +487,7 @@ class DragLoop:
     def _write(self, is_new: bool) -> None:
         """Write the accepted state: a new one without its complete test while the mouse moves.
 
-        Such a state is passed over if it fails. To search its path for one that passes would take several frames.
+        If it fails, it is passed over. To search its path for a state that passes would take several frames.
         """
         assert self.edit is not None
         with self.writer.writing():

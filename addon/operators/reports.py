@@ -37,7 +37,7 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
 
 
 def left_out_text(context: bpy.types.Context, edit: stiv_blender.Edit) -> str:
-    """What an edit leaves out of its guarantee: faces at joints, and objects that the next frame resets."""
+    """The message on exceptions from the guarantee: faces at joints, and objects that the next frame resets."""
     is_keyed = context.scene.tool_settings.use_keyframe_insert_auto
     return "; ".join(map(translate_error, filter(None, (edit.fold_note, "" if is_keyed else edit.reset_note))))
 

@@ -253,7 +253,7 @@ def cube_beside_wall() -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("exponent", [3, 9, 13, 14, 14.5, 15, 15.3, 16, 20, 30, 60])
 @pytest.mark.parametrize("separation", [0.0, 1e-3])
-def test_steps_far_longer_than_their_start_pass_through_nothing(exponent: float, separation: float) -> None:
+def test_contacts_of_steps_far_longer_than_their_start_are_found(exponent: float, separation: float) -> None:
     """The rounding error of the step exceeds the distance at the start, so that doubles do not know the side there."""
     triangles, start = cube_beside_wall()
     end = start.copy()

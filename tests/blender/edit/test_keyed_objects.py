@@ -49,7 +49,7 @@ def test_a_keyed_object_stops_at_contact_and_keeps_its_place_if_keyed(keyed: boo
     assert check_scene(bpy.context).pairs == ()
 
 
-def test_only_what_changed_is_keyed() -> None:
+def test_only_changed_properties_are_keyed() -> None:
     cube = keyed_cube()
     edit = BlenderEdit.begin(bpy.context, EditSettings(), "rotate")
     assert edit.drag(turn(0.3, "Z", (0.3, 0, 2))).status == "reached" and edit.write().passed

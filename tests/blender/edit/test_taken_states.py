@@ -113,7 +113,7 @@ def test_a_state_that_fails_by_rounding_is_written_a_few_roundings_nearer_to_the
 
 
 def test_a_complete_test_that_fails_by_rounding_accepts_a_state_that_passes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It is no reason to stop early."""
+    """The edit does not stop early for it."""
     cube = cube_above_floor()
     select(cube)
     edit = begin()

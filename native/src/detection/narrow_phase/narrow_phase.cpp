@@ -67,7 +67,7 @@ bool is_lost_in_motion(const RelativeMotion<double>& motion, double distance) {
   return distance > clear * Precision<double>::gap * size;
 }
 
-/// The contact of such a pair, in double-doubles: doubles cannot tell on which side it starts.
+/// The contact of a pair that is lost in its motion, in double-doubles: doubles cannot tell on which side it starts.
 std::optional<Contact> contact_of_long_motion(double threshold, const RelativeMotion<double>& relative,
                                               const PairMotion& motion, const Witness& at_start, double latest) {
   const RelativeMotion<DoubleDouble> finer(relative.kind, motion);
