@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drags of a fake edit, whose goal is a hundredth of the pointer's x, or the typed number."""
 
+from unittest.mock import patch
+
 from fake_edit import FakeEdit, FakeTask
 
+from stiv_addon.modal import drag_loop
 from stiv_addon.modal.drag_loop import DragCalls, DragLoop
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
@@ -36,5 +39,6 @@ def follow(drag: DragLoop, *positions: float) -> None:
 
 def pause(drag: DragLoop) -> None:
     """Leave the mouse where it is until the drag is at rest."""
-    while not drag.at_rest:
-        drag.tick()
+    with patch.object(drag_loop, "PAUSE_TIME", 0.0):
+        while not drag.at_rest:
+            drag.tick()

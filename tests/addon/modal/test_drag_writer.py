@@ -98,15 +98,14 @@ def test_a_state_that_fails_the_test_is_passed_over_without_a_solve_beside_it_to
     assert edit.shown == drag.writer.written.path[-1] == 0.3 and drag.writer.is_incomplete and not drag.at_rest
 
 
-def test_a_pause_tests_the_last_state_completely(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_pause_tests_the_last_state_completely() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)
     follow(drag, 10)
     drag.tick()
     assert edit.calls == ["drag", "write"] and drag.writer.is_incomplete
-    monkeypatch.setattr(drag_loop, "PAUSE_TIME", 0.0)
-    drag.tick()
-    assert edit.calls == ["drag", "write", "write"] and not drag.writer.is_incomplete and drag.at_rest
+    pause(drag)
+    assert edit.calls == ["drag", "write", "write"] and not drag.writer.is_incomplete
 
 
 def test_the_last_state_is_written_completely_if_it_failed_beside_a_solve() -> None:
