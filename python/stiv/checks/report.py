@@ -56,7 +56,8 @@ def summary(check: FileCheck, with_seams: bool = False) -> str:
     """The results for one file as text; `with_seams` includes the pairs of faces on seams."""
     if check.error:
         return f"stiv: {check.file}: {check.error}"
-    size = f"{check.vertices:,} vertices, {check.triangles:,} triangles, {len(check.objects)} objects"
+    objects = "1 object" if len(check.objects) == 1 else f"{len(check.objects)} objects"
+    size = f"{check.vertices:,} vertices, {check.triangles:,} triangles, {objects}"
     if len(check.scenes) > 1:
         size += f", {len(check.scenes)} scenes"
     if check.frames:
