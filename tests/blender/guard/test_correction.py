@@ -56,19 +56,24 @@ def test_a_free_result_is_left_exactly() -> None:
     assert snapshot() == expected
 
 
-def test_keyframes_of_objects_follow_the_correction_with_auto_keying() -> None:
+@pytest.mark.parametrize("keying", [True, False])
+def test_keyframes_of_objects_follow_the_correction_with_auto_keying(keying: bool) -> None:
+    """Without it, a message says that they will undo the correction."""
     add_wall()
     box = add_cube("Box")
     box.keyframe_insert("location")
-    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = keying
 
     def move() -> None:
         box.location = (9, 0.5, 0)
-        box.keyframe_insert("location")
+        if keying:
+            box.keyframe_insert("location")
 
-    assert corrected(move).corrected
+    outcome = corrected(move)
+    assert outcome.corrected and box.location.x == pytest.approx(WALL - 1, abs=0.02)
     bpy.context.scene.frame_set(bpy.context.scene.frame_current)
-    assert box.location.x == pytest.approx(WALL - 1, abs=0.02) and check_scene(bpy.context).pairs == ()
+    assert box.location.x == pytest.approx(WALL - 1 if keying else 0, abs=0.02) and check_scene(bpy.context).pairs == ()
+    assert outcome.message == ("" if keying else "Box: the next frame resets it to its keyframes; key it")
 
 
 def test_an_object_turned_and_scaled_at_once_is_corrected() -> None:

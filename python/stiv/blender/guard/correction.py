@@ -93,11 +93,14 @@ def correct_after_tool_steps(
     except BaseException:
         _restore(context, wanted, chosen)
         raise
+    messages = [outcome.message for outcome in outcomes]
     if context.scene.tool_settings.use_keyframe_insert_auto:  # the tool has keyed what it reached
         for outcome in outcomes:
             outcome.edit.insert_keyframes(context)
+    else:
+        messages += [outcome.edit.reset_note for outcome in outcomes]
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
-    message = next((outcome.message for outcome in outcomes if outcome.message), "")
+    message = next(filter(None, messages), "")
     cut = any(outcome.cut for outcome in outcomes)
     return ToolCorrection(True, names, tuple(blocking), message, deformers, cut)
 
