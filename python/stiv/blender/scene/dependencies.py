@@ -12,7 +12,7 @@ import bpy
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
 from stiv.blender.scene.references import modifier_title
 
-T = TypeVar("T", str, int)  # objects by name or session number
+T = TypeVar("T", str, int, tuple[int, bool])  # objects by name or session number; a number and a kind
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
+from stiv.blender.scene.dependencies import add_dependents, referenced_objects, shape_dependencies
 from stiv.blender.scene.evaluations import (
     RENDER,
     SHOWN,
@@ -19,6 +19,7 @@ from stiv.blender.scene.evaluations import (
     rendered_objects,
     signature,
 )
+from stiv.blender.scene.rig_followers import bone_constraints, driver_targets
 
 # Evaluated alike in both modes if Edit Mode shows them. Blender may skip other types in Edit Mode.
 EDIT_MODE_TYPES = frozenset(
@@ -27,6 +28,11 @@ EDIT_MODE_TYPES = frozenset(
         *("DISPLACE", "HOOK", "SHRINKWRAP", "SIMPLE_DEFORM", "SMOOTH", "WARP", "WELD"),
     }
 )
+
+
+SHAPE, PLACE = True, False  # of an object; a pose counts as a shape
+SHAPE_PARENTS = ("VERTEX", "VERTEX_3", "BONE")
+SHAPE_CONSTRAINTS = ("SHRINKWRAP", "FOLLOW_PATH", "CLAMP_TO", "ARMATURE")
 
 
 @dataclass(frozen=True)
@@ -54,9 +60,8 @@ def find_differences(context: bpy.types.Context, evaluations: Collection[str]) -
         viewport = _with_users({ob.session_uid for ob in objects if _is_edited_otherwise(ob, context.scene)}, objects)
     if RENDER in evaluations:
         rendered = rendered_objects(context.view_layer)
-        render = _rendered_otherwise(context, rendered, viewport)
-        if VIEWPORT not in evaluations:
-            render |= viewport & rendered
+        alike = frozenset() if VIEWPORT in evaluations else viewport & rendered
+        render = _rendered_otherwise(context, rendered, viewport, alike)
     return Differences(frozenset(viewport), frozenset(render), rendered)
 
 
@@ -72,7 +77,10 @@ def _is_edited_otherwise(ob: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     return any(modifier.type not in EDIT_MODE_TYPES for modifier in active)
 
 
-def _rendered_otherwise(context: bpy.types.Context, rendered: frozenset[int], viewport: set[int]) -> set[int]:
+def _rendered_otherwise(
+    context: bpy.types.Context, rendered: frozenset[int], viewport: set[int], alike: Collection[int]
+) -> set[int]:
+    """alike: objects of Object Mode that are rendered, and not read from there."""
     scene = context.scene
     objects = list(_all_objects(context.view_layer))
     layer = set(context.view_layer.objects)
@@ -80,15 +88,15 @@ def _rendered_otherwise(context: bpy.types.Context, rendered: frozenset[int], vi
     changed |= {ob.session_uid for ob in objects if ob not in layer and ob.hide_viewport != ob.hide_render}
     render = _with_users(changed, objects)
     shown = {ob.session_uid for ob in layer if ob.visible_get(view_layer=context.view_layer)}
-    render |= rendered - shown
+    render |= (rendered - shown).union(alike)
     by_number = {ob.session_uid: ob for ob in objects}
     waiting = list(render) if viewport else []
     while waiting:  # objects that they refer to must not be evaluated as in Edit Mode either
         ob = by_number.get(waiting.pop())
-        for used in () if ob is None else shape_dependencies(ob):
-            if used.session_uid in viewport and used.session_uid not in render:
-                render.add(used.session_uid)
-                waiting.append(used.session_uid)
+        used = set() if ob is None else {number for number, _ in (*_shaping(ob), *_placing(ob))}
+        new = used & viewport - render
+        render |= new
+        waiting += new
     return render
 
 
@@ -107,8 +115,42 @@ def _all_objects(view_layer: bpy.types.ViewLayer) -> Iterator[bpy.types.Object]:
 
 
 def _with_users(numbers: set[int], objects: Iterable[bpy.types.Object]) -> set[int]:
-    """The objects, and all that depend on them directly or indirectly."""
+    """The objects, whose shapes differ, and all whose shape or placement therefore differs, directly or indirectly."""
     if not numbers:
         return numbers
-    users = {ob.session_uid: {used.session_uid for used in shape_dependencies(ob)} for ob in objects}
-    return add_dependents(numbers, users)
+    users: dict[tuple[int, bool], set[tuple[int, bool]]] = {}
+    for ob in objects:
+        users[ob.session_uid, SHAPE] = set(_shaping(ob))
+        users[ob.session_uid, PLACE] = set(_placing(ob))
+    return {number for number, _ in add_dependents({(number, SHAPE) for number in numbers}, users)}
+
+
+def _shaping(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
+    """Shapes and placements on which the shape, the pose or the instances of an object depend."""
+    for used in shape_dependencies(ob):
+        yield from _both(used)
+    for constraint in bone_constraints(ob):
+        for used in referenced_objects(constraint):
+            yield from _both(used)
+    for target in driver_targets(ob):
+        yield from _both(target.id) if isinstance(target.id, bpy.types.Object) else ()
+
+
+def _placing(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
+    """Shapes and placements on which the placement of an object depends."""
+    if ob.parent is not None:
+        yield ob.parent.session_uid, PLACE
+        if ob.parent_type in SHAPE_PARENTS or ob.parent.type == "CURVE":
+            yield ob.parent.session_uid, SHAPE
+    for constraint in ob.constraints:
+        for used in () if constraint.mute else referenced_objects(constraint):
+            yield used.session_uid, PLACE
+            if constraint.type in SHAPE_CONSTRAINTS or getattr(constraint, "subtarget", False):
+                yield used.session_uid, SHAPE
+    for target in driver_targets(ob):
+        yield from _both(target.id) if isinstance(target.id, bpy.types.Object) else ()
+
+
+def _both(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
+    yield ob.session_uid, SHAPE
+    yield ob.session_uid, PLACE

@@ -22,19 +22,21 @@ def _used(ob: bpy.types.Object) -> Iterator[str]:
     yield from (each.used for each in dependencies(ob, (VIEWPORT, RENDER)))
     if ob.parent is not None:
         yield ob.parent.name
-    for constraint in _bone_constraints(ob):
+    for constraint in bone_constraints(ob):
         yield from (other.name for other in referenced_objects(constraint))
-    for target in _driver_targets(ob):
+    for target in driver_targets(ob):
         if isinstance(target.id, bpy.types.Object):
             yield target.id.name
 
 
-def _bone_constraints(ob: bpy.types.Object) -> Iterator[bpy.types.Constraint]:
+def bone_constraints(ob: bpy.types.Object) -> Iterator[bpy.types.Constraint]:
+    """Active constraints of the bones of an object."""
     if ob.pose is not None:
         yield from (each for bone in ob.pose.bones for each in bone.constraints if not each.mute)
 
 
-def _driver_targets(ob: bpy.types.Object) -> Iterator[bpy.types.DriverTarget]:
+def driver_targets(ob: bpy.types.Object) -> Iterator[bpy.types.DriverTarget]:
+    """The targets of all drivers of an object, its data and its shape keys."""
     for owner in (ob, ob.data, getattr(ob.data, "shape_keys", None)):
         yield from find_driver_targets(owner)
 
