@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from building import add_modifier, cube_above_floor, evaluated, select, shift, turn
 
-from stiv.blender import BlenderEdit, EditSettings, check_scene
+import stiv
+from stiv.blender import BlenderEdit, EditSettings, check_scene, drop, separate
 
 
 def keyed_cube() -> Any:
@@ -66,3 +67,11 @@ def test_a_keyed_object_that_renders_finer_is_guarded_in_the_viewport() -> None:
     cube = keyed_cube()
     add_modifier(cube, "SUBSURF", levels=0, render_levels=1)
     assert lowered().guard.choice == "viewport"
+
+
+@pytest.mark.parametrize("tool", [drop, lambda context: separate(context, EditSettings())])
+def test_tools_that_place_objects_for_good_refuse_keyframes(tool: Any) -> None:
+    cube = keyed_cube()
+    with pytest.raises(stiv.InputError, match="Cübe A: its transform is animated; clear the animation"):
+        tool(bpy.context)
+    assert tuple(cube.location) == pytest.approx((0.3, 0, 2))

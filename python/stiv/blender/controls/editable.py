@@ -39,11 +39,17 @@ def check_placement(ob: bpy.types.Object, may_be_keyed: bool = False) -> None:
     _check_scale(ob)
     if any(path.startswith(TRANSFORM_PATHS) for path in driven_paths(ob)):
         raise _refusal(ob, "driven")
-    if is_keyed(ob) and not may_be_keyed:
-        raise _refusal(ob, "animated")
+    if not may_be_keyed:
+        check_unkeyed(ob)
     check_unconstrained(ob)
     if ob.type == "META":
         raise _refusal(ob, "metaball")
+
+
+def check_unkeyed(ob: bpy.types.Object) -> None:
+    """Refuse an object whose keyframes would reset its transform at the next frame. Raises InputError."""
+    if is_keyed(ob):
+        raise _refusal(ob, "animated")
 
 
 def is_keyed(ob: bpy.types.Object) -> bool:

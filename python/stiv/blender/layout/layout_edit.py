@@ -12,6 +12,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.editable import check_unkeyed
 from stiv.blender.controls.participants import may_have_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.sessions import body_separations, split_controls, stack_controls
@@ -44,7 +45,8 @@ class LayoutEdit:
     ) -> None:
         """Read the scene. ground: the plane z = 0 is an obstacle too, the last mover.
 
-        Raises InputError naming the object: hidden, without collisions, locked, constrained or dependent on others.
+        Raises InputError naming the object: hidden, without collisions, locked, constrained, with keyframes, or
+        dependent on others.
         """
         if context.mode != "OBJECT":
             raise InputError("works in Object Mode; leave the present mode")
@@ -53,6 +55,7 @@ class LayoutEdit:
         for ob in movable:
             if settings.role(ob.name) == "ignored":
                 raise InputError(f"{ob.name}: it has the role No Collision; choose Automatic")
+            check_unkeyed(ob)
         if not movable:
             raise InputError("nothing movable is selected; select an object with a surface")
         self._settings = replace(settings, interference=False, responders="selected", object_response="slide_and_turn")

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.editable import check_unkeyed
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats
@@ -47,7 +48,10 @@ def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationRe
 def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[SeparationReport]:
     """Steps of `separate`; the last one writes."""
     free = replace(settings, interference=False, object_response="rigid", responders="selected")
-    edit = yield from BlenderEdit.begin_with_steps(context, free, "move", find_participants(context, free))
+    participants = find_participants(context, free)
+    for each in participants:
+        check_unkeyed(each.reference.find())
+    edit = yield from BlenderEdit.begin_with_steps(context, free, "move", participants)
     moving = edit.moving
     surfaces = _against_others(edit.assembly, moving, settings)
     pairs = find_face_pairs(surfaces, surfaces.positions, settings.threads)
