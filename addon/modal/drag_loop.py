@@ -31,7 +31,7 @@ MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a s
 FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 COMPARING_TIME = 5.0  # seconds that the comparison with the edit from the start may take after the confirmation
 FINISHING_TIME = 10.0  # seconds after the confirmation in which solves that meet obstacles may come closer
-PAUSE_TIME = 2 * FRAME  # seconds without a motion after which a state that was passed or tested in part is tested again
+PAUSE_TIME = 2 * FRAME  # seconds without a motion after which a state is tested completely
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
 

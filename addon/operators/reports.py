@@ -38,8 +38,8 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
 
 def left_out_text(context: bpy.types.Context, edit: stiv_blender.Edit) -> str:
     """The message on exceptions from the guarantee: faces at joints, and objects that the next frame resets."""
-    is_keyed = context.scene.tool_settings.use_keyframe_insert_auto
-    return "; ".join(map(translate_error, filter(None, (edit.fold_note, "" if is_keyed else edit.reset_note))))
+    reset_note = "" if context.scene.tool_settings.use_keyframe_insert_auto else edit.reset_note
+    return "; ".join(map(translate_error, filter(None, (edit.fold_note, reset_note))))
 
 
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: str = "") -> None:

@@ -7,21 +7,9 @@ import bpy
 import numpy as np
 import pytest
 from building import add, add_cube, add_grid, add_lattice, add_modifier, as_rendered, edit_mode, evaluated, select
+from evaluation_reading import kept, read_both, read_evaluation
 
 from stiv.blender.scene.evaluated_scene import read_scene
-
-
-def kept() -> dict[str, int]:
-    names = ("objects", "meshes", "scenes", "collections", "curves", "lattices", "shape_keys", "metaballs", "worlds")
-    return {name: len(getattr(bpy.data, name)) for name in names}
-
-
-def read(evaluation: str) -> dict[str, np.ndarray]:
-    before = kept()
-    meshes = read_scene(bpy.context, evaluations=(evaluation,)).meshes
-    assert kept() == before
-    assert len({mesh.owner for mesh in meshes}) == len(meshes)
-    return {mesh.owner.name: mesh.world() for mesh in meshes}
 
 
 def stacks() -> dict[str, Any]:
@@ -56,11 +44,7 @@ def test_both_evaluations_are_blenders(edited: str, simplified: bool) -> None:
     chosen = [ob for name, ob in objects.items() if name == edited or (len(name) == 1 and name in edited)]
     if edited == "Lattice":
         chosen = [objects["Lattice"]]
-    if chosen:
-        edit_mode(*chosen)
-    viewport, render = read("viewport"), read("render")
-    if chosen:
-        bpy.ops.object.mode_set(mode="OBJECT")
+    viewport, render = read_both(*chosen)
     check_equal(viewport, "ABCDEGH")
     as_rendered()
     check_equal(render, "ABCDFGH")
@@ -79,11 +63,7 @@ def test_copies_keep_the_inverses_of_parents_and_hooks(edited: str) -> None:
     hook.matrix_inverse = parent.matrix_world.inverted() @ hooked.matrix_world
     parent.location = (0.5, 1.5, 2)
     bpy.context.view_layer.update()
-    if edited:
-        edit_mode(parent)
-    viewport, render = read("viewport"), read("render")
-    if edited:
-        bpy.ops.object.mode_set(mode="OBJECT")
+    viewport, render = read_both(*([parent] if edited else []))
     check_equal(viewport, "CH")
     as_rendered()
     check_equal(render, "CH")
@@ -102,8 +82,8 @@ def test_a_posed_armature_counts_in_edit_mode() -> None:
     add_modifier(cube, "ARMATURE", object=arm)
     wanted = evaluated(cube)
     edit_mode(cube)
-    assert np.abs(wanted - read("shown")["Cube"]).max() > 0.4
-    np.testing.assert_array_equal(read("viewport")["Cube"].astype(np.float32), wanted.astype(np.float32))
+    assert np.abs(wanted - read_evaluation("shown")["Cube"]).max() > 0.4
+    np.testing.assert_array_equal(read_evaluation("viewport")["Cube"].astype(np.float32), wanted.astype(np.float32))
 
 
 def test_instances_of_objects_with_another_render() -> None:
@@ -127,7 +107,7 @@ def test_render_resolution_of_curves() -> None:
     spline.bezier_points.add(1)
     spline.bezier_points[1].co = (1, 0, 0)
     curve = add("Curve", data)
-    shown, rendered = read("viewport")["Curve"], read("render")["Curve"]
+    shown, rendered = read_evaluation("viewport")["Curve"], read_evaluation("render")["Curve"]
     data.splines[0].resolution_u = 4
     assert len(shown) != len(rendered) == len(evaluated(curve))
 

@@ -32,6 +32,13 @@ double rounded_down(const DoubleDouble& value) {
   return value.low < 0 ? std::nextafter(value.high, -never) : value.high;
 }
 
+/// An approach in double-doubles, with its nearest points in doubles.
+Approach<double> rounded(const RelativeMotion<double>& motion, const Approach<DoubleDouble>& approach) {
+  const double time = rounded_down(approach.time);
+  const VectorOf<DoubleDouble>& n = approach.last_normal;
+  return {time, witness(motion.kind, motion.at(time)), Vector3(n[0].high, n[1].high, n[2].high)};
+}
+
 /// Repeats in double-doubles a contact that doubles cannot distinguish from a near miss. Called only if the threshold
 /// is within rounding, and not for the many pairs that clearly cross.
 std::optional<Approach<double>> refined(const RelativeMotion<double>& motion, const PairMotion& pair, double threshold,
@@ -42,10 +49,9 @@ std::optional<Approach<double>> refined(const RelativeMotion<double>& motion, co
   if (slips_past(finer, threshold, approach)) return std::nullopt;
   const auto found = advance<DoubleDouble>(finer, threshold, approach.time, 1);
   if (!found) return std::nullopt;
-  const double time = rounded_down(found->time);
-  const VectorOf<DoubleDouble>& n = found->last_normal;
-  return Approach<double>{time, witness(motion.kind, motion.at(time)),
-                          n.isZero(0) ? approach.last_normal : Vector3(n[0].high, n[1].high, n[2].high)};
+  Approach<double> nearer = rounded(motion, *found);
+  if (nearer.last_normal.isZero(0)) nearer.last_normal = approach.last_normal;
+  return nearer;
 }
 
 bool starts_within(EventKind kind, const PairMotion& motion, const RelativeMotion<double>& relative,
@@ -75,10 +81,7 @@ std::optional<Contact> contact_of_long_motion(double threshold, const RelativeMo
   if (is_lost_again) return contact_of(relative, {0, at_start, Vector3::Zero()}, at_start.distance);
   const auto found = advance<DoubleDouble>(finer, threshold, 0, latest);
   if (!found) return std::nullopt;
-  const double time = rounded_down(found->time);
-  const VectorOf<DoubleDouble>& n = found->last_normal;
-  const Vector3 normal(n[0].high, n[1].high, n[2].high);
-  return contact_of(relative, {time, witness(relative.kind, relative.at(time)), normal}, at_start.distance);
+  return contact_of(relative, rounded(relative, *found), at_start.distance);
 }
 
 std::optional<Contact> contact_within(double threshold, const RelativeMotion<double>& relative,

@@ -95,8 +95,10 @@ def take_snapshot(
 def _is_animated(participant: Participant) -> bool:
     """Do keyframes determine what the edit changes?"""
     ob = participant.reference.find()
+    if participant.role == "rigid":
+        return is_keyed(ob)
     if participant.role != "bones":
-        return participant.role == "rigid" and is_keyed(ob)
+        return False
     animation = ob.animation_data
     return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
 

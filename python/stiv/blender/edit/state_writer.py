@@ -4,7 +4,7 @@
 import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain
 
 import bpy
 import numpy as np
@@ -81,14 +81,14 @@ class ShownState:
     deviations: stiv.DeviationTest | None
 
 
-def with_nudged(controls: Floats, last: Floats) -> Iterator[Floats]:
-    """Controls, (m, 3), and those that are a few roundings nearer to the last ones.
+def nudged(controls: Floats, last: Floats) -> Iterator[Floats]:
+    """Controls, (m, 3), that are a few roundings nearer to the last ones.
 
     Where surfaces nearly touch, it depends on rounding whether they intersect in Blender's evaluation.
     """
-    yield controls
+    size = float(np.abs(controls).max(initial=0.0))
     for nudge in NUDGES:
-        reach = nudge * float(np.abs(controls).max(initial=0.0))
+        reach = nudge * size
         yield np.asarray(controls + np.clip(last - controls, -reach, reach), np.float64)
 
 
@@ -115,7 +115,7 @@ class StateWriter:
         """
         if self._solver.trail is not taken.trail:
             return False
-        for controls in with_nudged(taken.controls, taken.trail.written):
+        for controls in chain((taken.controls,), nudged(taken.controls, taken.trail.written)):
             self.write(controls)
             if self._is_free_beside(taken.surface, taken.deviations):
                 self._solver.trail = Trail(taken.controls, taken.goal)
@@ -160,7 +160,7 @@ class StateWriter:
     def _passes_nudged(self, goal: Floats) -> bool:
         """Accept a state that differs by rounding, and write it; returns whether it passes the test."""
         session, last = self._solver.session, self._solver.trail.written
-        for controls in islice(with_nudged(session.controls, last), 1, None):
+        for controls in nudged(session.controls, last):
             session.edit(controls)
             if self._write_session().passed:
                 self._solver.restart_from(session.controls, goal)

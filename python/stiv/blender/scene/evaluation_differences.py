@@ -19,7 +19,7 @@ from stiv.blender.scene.evaluations import (
     rendered_objects,
     signature,
 )
-from stiv.blender.scene.rig_followers import bone_constraints, driver_targets
+from stiv.blender.scene.rig_followers import driving_objects, posing_objects
 
 # Evaluated alike in both modes if Edit Mode shows them. Blender may skip other types in Edit Mode.
 EDIT_MODE_TYPES = frozenset(
@@ -127,13 +127,8 @@ def _with_users(numbers: set[int], objects: Iterable[bpy.types.Object]) -> set[i
 
 def _shaping(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
     """Shapes and placements on which the shape, the pose or the instances of an object depend."""
-    for used in shape_dependencies(ob):
+    for used in (*shape_dependencies(ob), *posing_objects(ob), *driving_objects(ob)):
         yield from _both(used)
-    for constraint in bone_constraints(ob):
-        for used in referenced_objects(constraint):
-            yield from _both(used)
-    for target in driver_targets(ob):
-        yield from _both(target.id) if isinstance(target.id, bpy.types.Object) else ()
 
 
 def _placing(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
@@ -147,8 +142,8 @@ def _placing(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
             yield used.session_uid, PLACE
             if constraint.type in SHAPE_CONSTRAINTS or getattr(constraint, "subtarget", False):
                 yield used.session_uid, SHAPE
-    for target in driver_targets(ob):
-        yield from _both(target.id) if isinstance(target.id, bpy.types.Object) else ()
+    for used in driving_objects(ob):
+        yield from _both(used)
 
 
 def _both(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:

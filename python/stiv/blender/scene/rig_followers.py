@@ -22,23 +22,20 @@ def _used(ob: bpy.types.Object) -> Iterator[str]:
     yield from (each.used for each in dependencies(ob, (VIEWPORT, RENDER)))
     if ob.parent is not None:
         yield ob.parent.name
-    for constraint in bone_constraints(ob):
-        yield from (other.name for other in referenced_objects(constraint))
-    for target in driver_targets(ob):
-        if isinstance(target.id, bpy.types.Object):
-            yield target.id.name
+    yield from (other.name for other in (*posing_objects(ob), *driving_objects(ob)))
 
 
-def bone_constraints(ob: bpy.types.Object) -> Iterator[bpy.types.Constraint]:
-    """Active constraints of the bones of an object."""
-    if ob.pose is not None:
-        yield from (each for bone in ob.pose.bones for each in bone.constraints if not each.mute)
+def posing_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Objects that active constraints of an object's bones refer to."""
+    for bone in () if ob.pose is None else ob.pose.bones:
+        for constraint in bone.constraints:
+            yield from () if constraint.mute else referenced_objects(constraint)
 
 
-def driver_targets(ob: bpy.types.Object) -> Iterator[bpy.types.DriverTarget]:
-    """The targets of all drivers of an object, its data and its shape keys."""
+def driving_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Objects that the drivers of an object, its data and its shape keys read."""
     for owner in (ob, ob.data, getattr(ob.data, "shape_keys", None)):
-        yield from find_driver_targets(owner)
+        yield from (each.id for each in find_driver_targets(owner) if isinstance(each.id, bpy.types.Object))
 
 
 def find_driver_targets(owner: bpy.types.ID | None) -> Iterator[bpy.types.DriverTarget]:
