@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add_modifier, cube_above_floor, evaluated, select, shift, turn
+from building import add_cube, add_lattice, add_modifier, cube_above_floor, edit_mode, evaluated, select, shift, turn
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, drop, separate
@@ -29,6 +29,82 @@ def lowered() -> BlenderEdit:
     report = edit.write()
     assert report.passed, report.message
     return edit
+
+
+def posed_rig() -> tuple[Any, Any]:
+    """A keyed rig of two bones that bends a cube, in a pose that is not keyed yet; the rig and the cube."""
+    bpy.ops.object.armature_add()
+    rig = bpy.context.object
+    bpy.ops.object.mode_set(mode="EDIT")
+    other = rig.data.edit_bones.new("Other")
+    other.head, other.tail = (0, 0, 1), (0, 0, 2)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    cube = add_cube("Cube")
+    for name, vertices in zip(("Bone", "Other"), ((0, 2, 4, 6), (1, 3, 5, 7)), strict=True):
+        cube.vertex_groups.new(name=name).add(vertices, 1.0, "REPLACE")
+    add_modifier(cube, "ARMATURE", object=rig)
+    cube.parent = rig
+    for bone in rig.pose.bones:
+        bone.rotation_mode = "XYZ"
+        bone.keyframe_insert("rotation_euler", frame=1)
+        bone.rotation_euler.x = 0.4
+    bpy.context.view_layer.update()
+    return rig, cube
+
+
+def pose_of(rig: Any) -> list[float]:
+    return [bone.rotation_euler.x for bone in rig.pose.bones]
+
+
+@pytest.mark.parametrize("kind", ["vertices", "object", "rig"])
+def test_a_pose_that_is_not_keyed_yet_stays(kind: str) -> None:
+    """Blender evaluates copies with the keyframes, and resets animated objects on which these depend."""
+    rig, cube = posed_rig()
+    pose, shape = pose_of(rig), evaluated(cube)
+    select(rig if kind == "rig" else cube)
+    if kind == "vertices":
+        edit_mode(cube)
+        bpy.ops.mesh.select_all(action="SELECT")
+    if kind == "rig":
+        bpy.ops.object.mode_set(mode="POSE")
+        rig.data.bones.active = rig.data.bones["Other"]
+        chosen = rig.pose.bones["Other"]
+        (chosen if bpy.app.version >= (5, 0, 0) else chosen.bone).select = True
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "rotate" if kind == "rig" else "move")
+    goal = turn(0.1, "Y", rig.pose.bones["Other"].head) if kind == "rig" else shift(z=0.2)
+    assert edit.apply(goal).status == "reached" and edit.write().passed
+    bpy.context.view_layer.update()
+    assert pose_of(rig)[0] == pose[0] and pose_of(rig)[1] == (pose[1] if kind != "rig" else pytest.approx(0.4, abs=0.1))
+    edit.restore()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(evaluated(cube), shape, atol=1e-6)
+    assert pose_of(rig) == pose
+
+
+def test_a_value_of_a_shape_key_that_is_not_keyed_yet_stays() -> None:
+    """A lattice bends a cube, and its shape key has a keyframe and another value."""
+    lattice, cube = add_lattice("Lattice", (2, 2, 2), scale=(3, 3, 3)), add_cube("Cube")
+    lattice.shape_key_add(name="Basis")
+    key = lattice.shape_key_add(name="Taller")
+    for point in key.data:
+        point.co.z *= 2
+    key.keyframe_insert("value", frame=1)
+    key.value = 0.5
+    add_modifier(cube, "LATTICE", object=lattice)
+    add_modifier(cube, "CAST", factor=0.2)
+    bpy.context.view_layer.update()
+    before = evaluated(cube)
+    select(cube)
+    edit_mode(cube)
+    bpy.ops.mesh.select_all(action="SELECT")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    assert edit.apply(shift(z=0.1)).status == "reached" and edit.write().passed
+    assert key.value == 0.5
+    edit.restore()
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    np.testing.assert_allclose(evaluated(cube), before, atol=1e-6)
 
 
 def lowest(cube: Any) -> float:

@@ -524,3 +524,13 @@ def test_a_linked_rig_without_an_override_is_refused(tmp_path: Any) -> None:
     bpy.context.view_layer.objects.active = rig
     with pytest.raises(stiv.InputError, match="Rig: it is linked; make a library override"):
         stiv.blender.controls.bone_set.check_rig(rig)
+
+
+def test_an_empty_mesh_on_the_rig_does_not_matter() -> None:
+    rig, _, _ = box_below_hand()
+    empty = add_cube("Empty")
+    empty.data.clear_geometry()
+    add_modifier(empty, "ARMATURE", object=rig)
+    empty.parent = rig
+    _, report, _ = apply("rotate", turn(0.1, "Y", SHOULDER))
+    assert report.passed

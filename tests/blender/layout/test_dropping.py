@@ -6,7 +6,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from building import add_bowl, add_cube, add_grid, select
+from building import add, add_bowl, add_cube, add_grid, mesh, select
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from mathutils import Euler
@@ -88,6 +88,14 @@ def test_selected_objects_fall_onto_each_other() -> None:
     select(upper, lower)
     assert drop(bpy.context, DropSettings(EDIT)).changed == ("B", "A")  # the lower one first
     assert lower.location.z == pytest.approx(1 + H, abs=1e-3) and upper.location.z == pytest.approx(3 + 2 * H, abs=1e-3)
+
+
+def test_a_single_vertex_rests_on_the_floor() -> None:
+    add_grid("Floor", 4, 8.0)
+    point = add("Point", mesh("Point", [(0, 0, 0)], []), (0.1, 0.2, 3))
+    select(point)
+    assert drop(bpy.context, DropSettings(EDIT)).status == "done"
+    assert tuple(point.location) == pytest.approx((0.1, 0.2, H), abs=1e-3)
 
 
 def test_with_nothing_below_it_stays_or_falls_on_the_ground() -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Evaluations of Object Mode and the render, read in Edit Mode, against Blender in these states."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -9,6 +10,7 @@ import pytest
 from building import add, add_cube, add_grid, add_lattice, add_modifier, as_rendered, edit_mode, evaluated, select
 from evaluation_reading import kept, read_both, read_evaluation
 
+from stiv.blender.scene.dependencies import has_effect
 from stiv.blender.scene.evaluated_scene import read_scene
 
 
@@ -150,3 +152,31 @@ def test_metaballs_are_rendered_in_their_own_families() -> None:
     instances = bpy.context.evaluated_depsgraph_get().object_instances
     wanted = [len(instance.object.data.vertices) for instance in instances if instance.object.type == "MESH"]
     assert [len(local) for local in found] == wanted == [max(wanted)]
+
+
+def test_copies_are_at_the_frame_of_the_scene() -> None:
+    """Also below zero, where a preference forbids to go, and with the value that the render shows there."""
+    cube = add_cube("Cube")
+    add_modifier(cube, "SUBSURF", levels=0, render_levels=1)
+    for frame, height in ((-20, 0.0), (0, 2.0)):
+        cube.location.z = height
+        cube.keyframe_insert("location", frame=frame)
+    editing = bpy.context.preferences.edit
+    before = editing.use_negative_frames
+    try:
+        editing.use_negative_frames = True
+        bpy.context.scene.frame_set(-10)
+        editing.use_negative_frames = False
+        viewport, render = read_both()
+        assert not editing.use_negative_frames and bpy.context.scene.frame_current == -10
+    finally:
+        editing.use_negative_frames = before
+    check_equal(viewport, ["Cube"])
+    as_rendered()
+    check_equal(render, ["Cube"])
+
+
+def test_constraints_of_an_unknown_kind_have_no_effect() -> None:
+    """Blender gives those of a newer version no properties."""
+    assert not has_effect(SimpleNamespace(name="Newer"))  # type: ignore[arg-type]
+    assert [has_effect(SimpleNamespace(mute=mute)) for mute in (False, True)] == [True, False]  # type: ignore[arg-type]

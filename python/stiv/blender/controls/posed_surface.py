@@ -291,8 +291,7 @@ class _PosedMesh:
 
     def is_like(self, start: _PosedMesh) -> bool:
         """Has it the topology of the start, and finite positions?"""
-        points = self.stack.positions
-        return self.stack.has_topology_of(start.stack) and bool(np.isfinite(points).all() and len(points) > 0)
+        return self.stack.has_topology_of(start.stack) and bool(np.isfinite(self.stack.positions).all())
 
     def world(self) -> Floats:
         """World positions, (n, 3)."""
@@ -326,14 +325,12 @@ class RigTwin:
         own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
         own_data += [ob for ob in objects if ob.name in worn and ob not in own_data]
         wanted = {each.session_uid for each in (*shown, *rigs)}
-        self._copies = EvaluationCopies(scene, evaluation, own_data)
+        self._copies = EvaluationCopies(scene, evaluation, own_data, as_shown=True)
         try:
             self._copies.fill(objects, lambda ob: ob.session_uid in wanted)
             self._rigs = {each.session_uid: self._copies.copy_of(each) for each in rigs}
             self._worn = {ob.name: self._copies.copy_of(ObjectReference.of(ob)) for ob in objects if ob.name in worn}
             self._shown = {each.session_uid for each in shown}
-            for ob in objects:
-                self._stop_animation(self._copies.copy_of(ObjectReference.of(ob)), ob)
         except BaseException:
             self._copies.remove()
             raise
@@ -375,14 +372,6 @@ class RigTwin:
     def remove(self) -> None:
         """Remove the copies and their scene."""
         self._copies.remove()
-
-    @staticmethod
-    def _stop_animation(copy: bpy.types.Object, ob: bpy.types.Object) -> None:
-        """Keep the present values of a copy: a pose without keyframes is not that of the action."""
-        for owner in (copy, *(() if copy.data == ob.data else (copy.data, getattr(copy.data, "shape_keys", None)))):
-            animation = getattr(owner, "animation_data", None)
-            if animation is not None:
-                animation.action, animation.use_nla = None, False
 
 
 def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) -> tuple[list[str], Floats]:

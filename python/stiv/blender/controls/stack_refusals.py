@@ -77,8 +77,10 @@ def _keeps_topology(found: list[EvaluatedStack], agree: Comparison = EvaluatedSt
 
 
 def _has_effect(found: list[EvaluatedStack], moves: list[Singles]) -> bool:
-    """Does the surface move with the vertices, as far as the topology stays?"""
+    """Does the surface move with the vertices, as far as the topology stays? Vertices without extent are not moved."""
     moved = np.abs(moves[-1] - moves[0]).max(initial=0.0)
+    if moved == 0:
+        return True
     alike = all(len(each.positions) == len(found[0].positions) for each in found)
     shown = found[-1].positions - found[0].positions if alike else moves[-1]
     return bool(np.abs(shown).max(initial=0.0) > NO_EFFECT * moved)

@@ -147,7 +147,7 @@ def _level(scene: RigidScene, mover: int, direction: Floats) -> Steps[bool]:
     chosen = list(rows.values())[:MAX_ROWS]
     arms = np.array([each.point for each in chosen]).reshape(-1, 3) - before[0]
     normals = np.array([each.normal for each in chosen]).reshape(-1, 3)
-    radius = scene.size(mover) / 2
+    radius = scene.size(mover) / 2 or 1.0  # any, for a single vertex
     jacobian = np.hstack([normals, np.cross(arms, normals) / radius])
     missing = np.array([each.separation - each.distance for each in chosen])
     step = least_step(jacobian, missing, REACH * scene.separation * np.append(direction, np.zeros(3)))

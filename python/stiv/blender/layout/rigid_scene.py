@@ -16,6 +16,7 @@ from stiv.task import Call, Steps
 AUTOMATIC_FRACTION = 1e-4  # of the diagonal of the movers, as in the core
 SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
 STRIDE = 0.25  # of its size, that a body travels between two searches for obstacles
+SHORTEST_STRIDE = 1e-3  # of the whole way, for bodies without a size
 DRIFT = 1e-4  # of a distance below the separation, that a search after the first may lose to rounding
 TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
 
@@ -280,7 +281,7 @@ class RigidScene:
         It stops at the minimum distance; if it starts nearer than that, where it comes nearer yet. among: see `facing`.
         """
         length = max(float(np.linalg.norm(vector)), 1e-300)
-        step = min(1.0, STRIDE * self.size(mover) / length)
+        step = min(1.0, max(STRIDE * self.size(mover) / length, SHORTEST_STRIDE))
         for number in range(int(np.ceil(1 / step))):
             ends = np.array([number * step, min(1.0, (number + 1) * step)])
             nearer = TOLERANCE if number == 0 else DRIFT

@@ -30,8 +30,13 @@ def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,
         if any(is_active(modifier, ob, evaluation) for evaluation in evaluations):
             yield from _named(ob, modifier_title(modifier), referenced_objects(modifier))
     for constraint in ob.constraints:
-        if not constraint.mute:
+        if has_effect(constraint):
             yield from _named(ob, f'constraint "{constraint.name}"', referenced_objects(constraint))
+
+
+def has_effect(constraint: bpy.types.Constraint) -> bool:
+    """Does Blender evaluate a constraint? Not one of a kind that this version does not know."""
+    return not getattr(constraint, "mute", True)
 
 
 def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[Dependency]:

@@ -13,10 +13,10 @@ from typing import Any
 
 import bpy
 
-from stiv.blender.scene.dependencies import node_inputs
+from stiv.blender.scene.dependencies import add_dependents, node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import find_driver_targets
+from stiv.blender.scene.rig_followers import find_driver_targets, used_objects
 
 NAME = "STIV Evaluation"
 COPIED_TYPES = ("CURVE", "SURFACE", "FONT", "META")  # their data holds the resolution
@@ -27,9 +27,20 @@ TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_sub
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
-    def __init__(self, home: bpy.types.Scene, evaluation: str, own_data: Collection[bpy.types.Object] = ()) -> None:
-        """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too."""
+    def __init__(
+        self,
+        home: bpy.types.Scene,
+        evaluation: str,
+        own_data: Collection[bpy.types.Object] = (),
+        *,
+        as_shown: bool = False,
+    ) -> None:
+        """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too.
+
+        as_shown: values that are not keyed yet stay in the render too, where Blender shows the keyframes.
+        """
         self._evaluation = evaluation
+        self._keeps_values = as_shown or evaluation != RENDER
         self._own_data = frozenset(ob.session_uid for ob in own_data)
         self._made: list[bpy.types.ID] = []
         self._copies: dict[int, bpy.types.Object] = {}
@@ -40,13 +51,14 @@ class EvaluationCopies:
         self._copy_settings(home)
 
     def fill(self, objects: Sequence[bpy.types.Object], shown: Callable[[bpy.types.Object], bool]) -> None:
-        """Copy objects and evaluate them."""
-        for ob in objects:
+        """Copy objects and the animated ones on which they depend, and evaluate them. `shown` selects the visible."""
+        copied = [*objects, *_animated_below(objects)]
+        for ob in copied:
             self._copies[ob.session_uid] = self._copy(ob)
-        for ob in objects:
+        for ob in copied:
             self._replace_references(self._copies[ob.session_uid])
-            if shown(ob):
-                self.scene.collection.objects.link(self._copies[ob.session_uid])
+        for ob in filter(shown, objects):
+            self.scene.collection.objects.link(self._copies[ob.session_uid])
         self.scene.view_layers[0].update()
 
     @property
@@ -71,12 +83,16 @@ class EvaluationCopies:
         bpy.data.batch_remove(self._made)
 
     def _copy_settings(self, home: bpy.types.Scene) -> None:
+        with _negative_frames():
+            self._copy_time(home)
+        if self._evaluation == RENDER:
+            self.scene.render.simplify_subdivision = home.render.simplify_subdivision_render
+
+    def _copy_time(self, home: bpy.types.Scene) -> None:
         for name in SCENE_SETTINGS:
             setattr(self.scene, name, getattr(home, name))
         for name in TIME_SETTINGS:
             setattr(self.scene.render, name, getattr(home.render, name))
-        if self._evaluation == RENDER:
-            self.scene.render.simplify_subdivision = home.render.simplify_subdivision_render
 
     def _copy(self, ob: bpy.types.Object) -> bpy.types.Object:
         if is_edited(ob):
@@ -85,9 +101,12 @@ class EvaluationCopies:
         self._made.append(twin)
         if ob.type == "META":  # metaballs merge by name, and a numbered name would show no surface
             twin.name = f"{NAME[0]}{ob.name}"
-        if ob.session_uid in self._own_data or getattr(ob.data, "is_editmode", False) or ob.type in COPIED_TYPES:
+        if ob.session_uid in self._own_data or getattr(ob.data, "is_editmode", False) or _has_data_to_copy(ob):
             twin.data = ob.data.copy()
             self._made.append(twin.data)
+        if self._keeps_values:
+            for each in (twin, *_data_of(twin)) if twin.data in self._made else (twin,):
+                _forget_keyframes(each)
         self._users[twin.session_uid] = ob
         if self._evaluation == RENDER:
             _as_rendered(twin)
@@ -148,6 +167,58 @@ class EvaluationCopies:
                 if self._evaluation != RENDER or not child.hide_render:
                     made.children.link(self._collection(child))
         return self._collections[collection.name_full]
+
+
+def _animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Animated objects on which others depend, and those between. Their keyframes would undo what is not keyed yet."""
+    found: dict[int, bpy.types.Object] = {}
+    used_by: dict[int, set[int]] = {}
+    waiting = list(objects)
+    while waiting:
+        user = waiting.pop()
+        if user.session_uid not in found:
+            instanced = () if user.instance_collection is None else user.instance_collection.all_objects
+            used = [*used_objects(user), *instanced]
+            found[user.session_uid] = user
+            used_by[user.session_uid] = {each.session_uid for each in used}
+            waiting += used
+    given = {ob.session_uid for ob in objects}
+    animated = {number for number, ob in found.items() if any(map(_is_keyed, (ob, *_data_of(ob))))}
+    return [found[number] for number in found if number in add_dependents(animated, used_by) - given]
+
+
+def _has_data_to_copy(ob: bpy.types.Object) -> bool:
+    return ob.type in COPIED_TYPES or (ob.type != "ARMATURE" and any(map(_is_keyed, _data_of(ob))))
+
+
+def _data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
+    """The data of an object, and its shape keys."""
+    return [each for each in (ob.data, getattr(ob.data, "shape_keys", None)) if each is not None]
+
+
+def _is_keyed(block: bpy.types.ID) -> bool:
+    animation = block.animation_data
+    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
+
+
+def _forget_keyframes(copy: bpy.types.ID) -> None:
+    """Let a copy keep its present values. Drivers stay."""
+    if _is_keyed(copy):
+        copy.animation_data.use_tweak_mode = False
+        copy.animation_data.use_nla = False
+        copy.animation_data.action = None
+
+
+@contextmanager
+def _negative_frames() -> Iterator[None]:
+    """Let a scene be set to a frame below zero, which a preference forbids though a file can be there."""
+    preferences = bpy.context.preferences
+    before = preferences.edit.use_negative_frames, preferences.is_dirty
+    preferences.edit.use_negative_frames = True
+    try:
+        yield
+    finally:
+        preferences.edit.use_negative_frames, preferences.is_dirty = before
 
 
 @contextmanager

@@ -7,29 +7,32 @@ from collections.abc import Iterator
 
 import bpy
 
-from stiv.blender.scene.dependencies import add_dependents, dependencies, referenced_objects
-from stiv.blender.scene.evaluations import RENDER, VIEWPORT
+from stiv.blender.scene.dependencies import add_dependents, has_effect, referenced_objects
+from stiv.blender.scene.evaluations import RENDER, VIEWPORT, is_active
 
 
 def find_followers(scene: bpy.types.Scene, rigs: set[str]) -> set[str]:
     """Names of the rigs, and of all objects that depend on them directly or indirectly."""
-    users = {ob.name: set(_used(ob)) for ob in scene.objects}
+    users = {ob.name: {used.name for used in used_objects(ob)} for ob in scene.objects}
     return add_dependents(rigs, users)
 
 
-def _used(ob: bpy.types.Object) -> Iterator[str]:
-    """Names of the objects on which an object depends."""
-    yield from (each.used for each in dependencies(ob, (VIEWPORT, RENDER)))
+def used_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """Objects on which the shape or the place of an object depends, in the viewport or as rendered."""
+    active = [each for each in ob.modifiers if is_active(each, ob, VIEWPORT) or is_active(each, ob, RENDER)]
+    for owner in (*active, *filter(has_effect, ob.constraints)):
+        yield from referenced_objects(owner)
     if ob.parent is not None:
-        yield ob.parent.name
-    yield from (other.name for other in (*posing_objects(ob), *driving_objects(ob)))
+        yield ob.parent
+    yield from posing_objects(ob)
+    yield from driving_objects(ob)
 
 
 def posing_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Objects that active constraints of an object's bones refer to."""
     for bone in () if ob.pose is None else ob.pose.bones:
         for constraint in bone.constraints:
-            yield from () if constraint.mute else referenced_objects(constraint)
+            yield from referenced_objects(constraint) if has_effect(constraint) else ()
 
 
 def driving_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
