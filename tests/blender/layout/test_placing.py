@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, select
+from building import add, add_cube, add_grid, mesh, select
 from mathutils import Vector
 
 import stiv
@@ -75,6 +75,11 @@ def test_without_a_surface_or_cancelled_nothing_is_added() -> None:
     select(stone)
     with pytest.raises(stiv.InputError, match="no surface to place on"):
         place(bpy.context, PlaceSettings(EDIT))
+    points = add("Points", mesh("Points", [(0, 0, 0), (1, 0, 0)], []))
+    select(stone, points)
+    with pytest.raises(stiv.InputError, match="no surface to place on"):
+        place(bpy.context, PlaceSettings(EDIT))
+    bpy.data.objects.remove(points)
     select(stone, hill())
     token = stiv.CancelToken()
     report = place(bpy.context, PlaceSettings(EDIT), cancel=token, progress=lambda *_: token.cancel())

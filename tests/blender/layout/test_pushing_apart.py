@@ -4,10 +4,11 @@
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, select
+from building import add_cube, add_grid, add_modifier, select
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import stiv
 from stiv.blender import EditSettings, check_scene, nearest_pair, push_apart
 
 H = 0.01
@@ -62,6 +63,19 @@ def test_what_is_inside_a_closed_room_stays_inside() -> None:
     select(table)
     push_apart(bpy.context, EDIT)
     assert table.location.z == pytest.approx(-3 + H, abs=1e-4)
+
+
+def test_a_cube_whose_topology_changes_on_the_way_is_named() -> None:
+    cutter, cut, other = add_cube("Cutter", (0.9, 0.9, 0.9)), add_cube("Cut"), add_cube("Other", (-1.5, -0.2, -0.1))
+    add_modifier(cut, "BOOLEAN", object=cutter, operation="DIFFERENCE")
+    cutter.hide_set(True)
+    other.lock_location = (True, True, True)
+    for ob in (cut, other):
+        ob.rotation_euler = (0.2, 0.3, 0.1)
+    select(cut)
+    with pytest.raises(stiv.InputError, match="Cut: its topology changes as it moves; apply its modifiers"):
+        push_apart(bpy.context, EditSettings(separation=2.5))
+    assert tuple(cut.location) == (0, 0, 0)
 
 
 def test_apart_already() -> None:

@@ -154,9 +154,9 @@ class Place(LayoutTask):
 def _surface_corners(edit: LayoutEdit, names: set[str]) -> Floats:
     """Corners, (f, 3, 3), of the triangles of named objects."""
     meshes = [k for k, mesh in enumerate(edit.assembly.meshes) if mesh.owner.name in names and mesh.strands is None]
-    if not meshes:
+    flags = np.isin(edit.assembly.surface.triangles[:, 0], edit.assembly.vertices_of(meshes)) if meshes else False
+    if not np.any(flags):
         raise InputError("no surface to place on; select it too, before the object to copy")
-    flags = np.isin(edit.assembly.surface.triangles[:, 0], edit.assembly.vertices_of(meshes))
     return edit.assembly.positions[edit.assembly.surface.triangles[flags]]
 
 

@@ -126,10 +126,14 @@ class RigidScene:
         return self._poses[mover].copy()
 
     def set_pose(self, mover: int, pose: Floats) -> None:
-        """Pose a mover; nothing is tested."""
+        """Pose a mover; nothing is tested. Raises InputError if modifiers change its topology there."""
+        chosen = self.movers[mover]
+        rows = chosen.rows
+        try:
+            self._positions[rows] = chosen.deformation.surface(pose)
+        except stiv.InfeasibleError as error:
+            raise stiv.InputError(f"{chosen.name}: its topology changes as it moves; apply its modifiers") from error
         self._poses[mover] = pose.copy()
-        rows = self.movers[mover].rows
-        self._positions[rows] = self.movers[mover].deformation.surface(pose)
         for elements, boxes in zip(self._elements, self._boxes, strict=True):
             own = np.flatnonzero(self._mover_of_vertex[elements[:, 0]] == mover)
             boxes[:, own] = _boxes(self._positions, elements[own])
