@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Objects whose transform has keyframes move as with Blender's own tools: until the frame changes, or keyed."""
 
+from itertools import pairwise
 from typing import Any
 
 import bpy
@@ -105,6 +106,34 @@ def test_a_value_of_a_shape_key_that_is_not_keyed_yet_stays() -> None:
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
     np.testing.assert_allclose(evaluated(cube), before, atol=1e-6)
+
+
+@pytest.mark.parametrize("guard", ["viewport", "both"])
+def test_values_of_materials_and_nodes_that_are_not_keyed_yet_stay(guard: str) -> None:
+    cube, material = add_cube("Cube"), bpy.data.materials.new("Material")
+    cube.data.materials.append(material)
+    tree = bpy.data.node_groups.new("Lift", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", "GeometryNodeSetPosition", "NodeGroupOutput")]
+    for first, second in pairwise(nodes):
+        tree.links.new(first.outputs[0], second.inputs[0])
+    offset = nodes[1].inputs["Offset"]
+    for owner, name, value in ((material, "roughness", 0.9), (offset, "default_value", (0, 0, 0.5))):
+        owner.keyframe_insert(name, frame=1)
+        setattr(owner, name, value)
+    add_modifier(cube, "NODES", node_group=tree)
+    add_modifier(cube, "SUBSURF", levels=0, render_levels=1)
+    select(cube)
+    edit_mode(cube)
+    bpy.ops.mesh.select_all(action="SELECT")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(guard=guard), "move")
+    assert edit.apply(shift(z=0.1)).status == "reached" and edit.write().passed
+    edit.restore()
+    assert material.roughness == pytest.approx(0.9) and tuple(offset.default_value) == (0, 0, 0.5)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    assert evaluated(cube)[:, 2].max() == pytest.approx(1.5)
 
 
 def lowest(cube: Any) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import stack_trials
 from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot
+from evaluation_reading import kept
 from stack_trials import WAYS, kept_motion, open_piece, run_random_trial, run_trial
 from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin, subdivided
 
@@ -332,3 +333,16 @@ def test_twins_are_removed_after_each_call_unless_they_are_kept() -> None:
     edit.drag(shift(0, 0.3, 0.1))
     assert edit.write().passed
     assert (len(bpy.data.scenes), len(bpy.data.objects), len(bpy.data.meshes)) == (1, 1, 1)
+
+
+def test_copies_of_shape_keys_are_removed() -> None:
+    """Blender would save those that are left with the file."""
+    ob = mirrored()
+    ob.shape_key_add(name="Basis")
+    ob.shape_key_add(name="Same").value = 0.5
+    skin(ob)
+    select(ob)
+    before = kept()
+    edit = begin()
+    edit.drag(shift(0, 0.2, 0.1))
+    assert edit.write().passed and kept() == before

@@ -13,10 +13,11 @@ from typing import Any
 
 import bpy
 
-from stiv.blender.scene.dependencies import add_dependents, node_inputs
+from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import find_driver_targets, used_objects
+from stiv.blender.scene.rig_followers import find_driver_targets
+from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, data_of, forget_keyframes, is_keyed
 
 NAME = "STIV Evaluation"
 COPIED_TYPES = ("CURVE", "SURFACE", "FONT", "META")  # their data holds the resolution
@@ -52,7 +53,8 @@ class EvaluationCopies:
 
     def fill(self, objects: Sequence[bpy.types.Object], shown: Callable[[bpy.types.Object], bool]) -> None:
         """Copy objects and the animated ones on which they depend, and evaluate them. `shown` selects the visible."""
-        copied = [*objects, *_animated_below(objects)]
+        unkeyed = UnkeyedValues()
+        copied = [*objects, *animated_below(objects)]
         for ob in copied:
             self._copies[ob.session_uid] = self._copy(ob)
         for ob in copied:
@@ -60,6 +62,8 @@ class EvaluationCopies:
         for ob in filter(shown, objects):
             self.scene.collection.objects.link(self._copies[ob.session_uid])
         self.scene.view_layers[0].update()
+        if unkeyed.restore():  # also in the render: all evaluations share these data
+            self.scene.view_layers[0].update()
 
     @property
     def depsgraph(self) -> bpy.types.Depsgraph:
@@ -105,8 +109,8 @@ class EvaluationCopies:
             twin.data = ob.data.copy()
             self._made.append(twin.data)
         if self._keeps_values:
-            for each in (twin, *_data_of(twin)) if twin.data in self._made else (twin,):
-                _forget_keyframes(each)
+            for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
+                forget_keyframes(each)
         self._users[twin.session_uid] = ob
         if self._evaluation == RENDER:
             _as_rendered(twin)
@@ -169,44 +173,8 @@ class EvaluationCopies:
         return self._collections[collection.name_full]
 
 
-def _animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
-    """Animated objects on which others depend, and those between. Their keyframes would undo what is not keyed yet."""
-    found: dict[int, bpy.types.Object] = {}
-    used_by: dict[int, set[int]] = {}
-    waiting = list(objects)
-    while waiting:
-        user = waiting.pop()
-        if user.session_uid not in found:
-            instanced = () if user.instance_collection is None else user.instance_collection.all_objects
-            used = [*used_objects(user), *instanced]
-            found[user.session_uid] = user
-            used_by[user.session_uid] = {each.session_uid for each in used}
-            waiting += used
-    given = {ob.session_uid for ob in objects}
-    animated = {number for number, ob in found.items() if any(map(_is_keyed, (ob, *_data_of(ob))))}
-    return [found[number] for number in found if number in add_dependents(animated, used_by) - given]
-
-
 def _has_data_to_copy(ob: bpy.types.Object) -> bool:
-    return ob.type in COPIED_TYPES or (ob.type != "ARMATURE" and any(map(_is_keyed, _data_of(ob))))
-
-
-def _data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
-    """The data of an object, and its shape keys."""
-    return [each for each in (ob.data, getattr(ob.data, "shape_keys", None)) if each is not None]
-
-
-def _is_keyed(block: bpy.types.ID) -> bool:
-    animation = block.animation_data
-    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
-
-
-def _forget_keyframes(copy: bpy.types.ID) -> None:
-    """Let a copy keep its present values. Drivers stay."""
-    if _is_keyed(copy):
-        copy.animation_data.use_tweak_mode = False
-        copy.animation_data.use_nla = False
-        copy.animation_data.action = None
+    return ob.type in COPIED_TYPES or (ob.type != "ARMATURE" and any(map(is_keyed, data_of(ob))))
 
 
 @contextmanager

@@ -73,8 +73,7 @@ class StackTwin:
             self._copies.remove()
             raise
         self.ob = self._copies.copy_of(reference)
-        if self.ob.data.shape_keys is not None:  # positions are those that the keys show
-            self.ob.shape_key_clear()
+        _remove_keys(self.ob)  # positions are those that the keys show
 
     def remove(self) -> None:
         """Remove the copy and its scene."""
@@ -166,6 +165,14 @@ def _remove_kept() -> None:
         _, twin = _kept.popitem()
         with suppress(ReferenceError):  # undo or another file has removed it
             twin.remove()
+
+
+def _remove_keys(ob: bpy.types.Object) -> None:
+    """Remove the shape keys of a copy. Blender counts a user too many, and would save them with the file."""
+    if ob.data.shape_keys is not None:
+        number = ob.data.shape_keys.session_uid
+        ob.shape_key_clear()
+        bpy.data.batch_remove([each for each in bpy.data.shape_keys if each.session_uid == number])
 
 
 @contextmanager

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps values that are not keyed yet: where Blender evaluates animated data anew, keyframes would replace them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import Any
+
+import bpy
+
+from stiv.blender.scene.animation_curves import keyed_paths
+from stiv.blender.scene.dependencies import add_dependents
+from stiv.blender.scene.rig_followers import used_objects
+
+
+class UnkeyedValues:
+    """The present values of the keyed properties of materials, nodes, textures and particles, which copies share."""
+
+    def __init__(self) -> None:
+        """Read the values."""
+        blocks = [block for block in _shared_blocks() if block.library is None and is_keyed(block)]
+        self._values = [(block, path, value) for block in blocks for path, value in _keyed_values(block)]
+
+    def restore(self) -> bool:
+        """Write the values that differ now; False if none does."""
+        changed = [each for each in self._values if _read(each[0], each[1]) != each[2]]
+        for block, path, value in changed:
+            owner, _, name = path.rpartition(".")
+            setattr(block.path_resolve(owner) if owner else block, name, value)
+        return bool(changed)
+
+
+def _shared_blocks() -> Iterator[bpy.types.ID]:
+    data = bpy.data
+    for block in (*data.materials, *data.node_groups, *data.textures, *data.particles):
+        yield block
+        if getattr(block, "node_tree", None) is not None:
+            yield block.node_tree
+
+
+def _keyed_values(block: bpy.types.ID) -> Iterator[tuple[str, Any]]:
+    for path in keyed_paths(block):
+        with suppress(ValueError):  # a path that no longer leads anywhere
+            if not path.endswith("]"):  # a custom property
+                yield path, _read(block, path)
+
+
+def _read(block: bpy.types.ID, path: str) -> Any:
+    value = block.path_resolve(path)
+    return tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else value
+
+
+def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Animated objects on which these depend, and those between."""
+    found: dict[int, bpy.types.Object] = {}
+    used_by: dict[int, set[int]] = {}
+    waiting = list(objects)
+    while waiting:
+        user = waiting.pop()
+        if user.session_uid not in found:
+            instanced = () if user.instance_collection is None else user.instance_collection.all_objects
+            used = [*used_objects(user), *instanced]
+            found[user.session_uid] = user
+            used_by[user.session_uid] = {each.session_uid for each in used}
+            waiting += used
+    given = {ob.session_uid for ob in objects}
+    animated = {number for number, ob in found.items() if any(map(is_keyed, (ob, *data_of(ob))))}
+    chosen = add_dependents(animated, used_by) - given
+    return [ob for number, ob in found.items() if number in chosen]
+
+
+def data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
+    """The data of an object, and its shape keys."""
+    return [each for each in (ob.data, getattr(ob.data, "shape_keys", None)) if each is not None]
+
+
+def is_keyed(block: bpy.types.ID) -> bool:
+    """Has a data-block an action or tracks?"""
+    animation = block.animation_data
+    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
+
+
+def forget_keyframes(copy: bpy.types.ID) -> None:
+    """Let a copy keep its present values. Drivers stay."""
+    if is_keyed(copy):
+        copy.animation_data.use_tweak_mode = False
+        copy.animation_data.use_nla = False
+        copy.animation_data.action = None
