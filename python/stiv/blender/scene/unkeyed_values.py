@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Keeps values that are not keyed yet: where Blender evaluates animated data anew, keyframes would replace them."""
+"""Keeps values that are not keyed yet: where Blender evaluates animated data again, keyframes would replace them."""
 
 from __future__ import annotations
 
