@@ -69,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "形态键是关联的；请创建库重写",
     "its shape keys hide edits; apply all shape keys": "其形态键会掩盖编辑；请应用所有形态键",
     "its structure has changed; use Undo instead": "其结构已改变；请改用撤销",
+    "its topology changes as it moves; apply its modifiers": "移动时拓扑会改变；请应用其修改器",
     "its transform is animated; clear the animation": "其变换有动画；请清除动画",
     "its transform is driven; delete the drivers": "其变换由驱动器控制；请删除驱动器",
     "its transform is locked; unlock it": "其变换已锁定；请解锁",

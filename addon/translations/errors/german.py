@@ -69,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "die Formschlüssel sind verknüpft; eine Bibliotheksüberschreibung anlegen",
     "its shape keys hide edits; apply all shape keys": "Formschlüssel verdecken Änderungen; alle anwenden",
     "its structure has changed; use Undo instead": "die Struktur hat sich geändert; stattdessen Rückgängig verwenden",
+    "its topology changes as it moves; apply its modifiers": "seine Topologie ändert sich beim Bewegen; die Modifikatoren anwenden",
     "its transform is animated; clear the animation": "die Transformation ist animiert; Animation löschen",
     "its transform is driven; delete the drivers": "die Transformation hat Treiber; Treiber löschen",
     "its transform is locked; unlock it": "die Transformation ist gesperrt; entsperren",

@@ -69,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "シェイプキーがリンクされています。ライブラリオーバーライドを作成してください",
     "its shape keys hide edits; apply all shape keys": "シェイプキーのため編集が見えません。すべて適用してください",
     "its structure has changed; use Undo instead": "構造が変わりました。代わりに「元に戻す」を使ってください",
+    "its topology changes as it moves; apply its modifiers": "移動するとトポロジーが変わります。モディファイアーを適用してください",
     "its transform is animated; clear the animation": "トランスフォームがアニメーションしています。アニメーションをクリアしてください",
     "its transform is driven; delete the drivers": "トランスフォームがドライバーで制御されています。ドライバーを削除してください",
     "its transform is locked; unlock it": "トランスフォームがロックされています。解除してください",

@@ -69,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "셰이프 키가 링크됨; 라이브러리 오버라이드 만들기",
     "its shape keys hide edits; apply all shape keys": "셰이프 키가 편집을 가림; 모두 적용하세요",
     "its structure has changed; use Undo instead": "구조가 바뀜; 대신 실행 취소를 사용하세요",
+    "its topology changes as it moves; apply its modifiers": "이동하면 토폴로지가 바뀝니다. 모디파이어를 적용하세요",
     "its transform is animated; clear the animation": "변환이 애니메이션됨; 애니메이션을 지우세요",
     "its transform is driven; delete the drivers": "변환이 드라이버로 제어됨; 드라이버를 삭제하세요",
     "its transform is locked; unlock it": "변환이 잠겨 있음; 잠금을 해제하세요",
