@@ -108,6 +108,31 @@ def test_a_value_of_a_shape_key_that_is_not_keyed_yet_stays() -> None:
     np.testing.assert_allclose(evaluated(cube), before, atol=1e-6)
 
 
+@pytest.mark.parametrize("driven", ["shape key", "material"])
+def test_an_object_that_drivers_read_keeps_a_place_that_is_not_keyed_yet(driven: str) -> None:
+    cube, other = keyed_cube(), add_cube("Other", (9, 0, 0))
+    other.shape_key_add(name="Basis")
+    key, material = other.shape_key_add(name="Same"), bpy.data.materials.new("Material")
+    other.data.materials.append(material)
+    owner, path = (key, "value") if driven == "shape key" else (material, "roughness")
+    driver = owner.driver_add(path).driver
+    variable = driver.variables.new()
+    variable.type, driver.expression = "TRANSFORMS", variable.name
+    variable.targets[0].id = cube
+    for ob in (cube, other):
+        add_modifier(ob, "SUBSURF", levels=0, render_levels=1)
+    cube.location = (1, 0.2, 3)
+    bpy.context.view_layer.update()
+    edited = cube if driven == "shape key" else other  # so that the other one shares its data with its copy
+    select(edited)
+    edit_mode(edited)
+    bpy.ops.mesh.select_all(action="SELECT")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(guard="both"), "move")
+    assert edit.apply(shift(z=0.1)).status == "reached" and edit.write().passed
+    edit.restore()
+    np.testing.assert_allclose(cube.location, (1, 0.2, 3), atol=1e-6)
+
+
 @pytest.mark.parametrize("guard", ["viewport", "both"])
 def test_values_of_materials_and_nodes_that_are_not_keyed_yet_stay(guard: str) -> None:
     cube, material = add_cube("Cube"), bpy.data.materials.new("Material")

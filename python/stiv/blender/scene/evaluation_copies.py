@@ -16,7 +16,7 @@ import bpy
 from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import find_driver_targets
+from stiv.blender.scene.rig_followers import driving, find_driver_targets
 from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, data_of, forget_keyframes, is_keyed
 
 NAME = "STIV Evaluation"
@@ -174,7 +174,10 @@ class EvaluationCopies:
 
 
 def _has_data_to_copy(ob: bpy.types.Object) -> bool:
-    return ob.type in COPIED_TYPES or (ob.type != "ARMATURE" and any(map(is_keyed, data_of(ob))))
+    """Would data that a copy shares be changed, or refer to originals? Rigs are posed by their objects."""
+    if ob.type == "ARMATURE":
+        return False
+    return ob.type in COPIED_TYPES or any(is_keyed(each) or any(driving(each)) for each in data_of(ob))
 
 
 @contextmanager

@@ -38,7 +38,12 @@ def posing_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
 def driving_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Objects that the drivers of an object, its data and its shape keys read."""
     for owner in (ob, ob.data, getattr(ob.data, "shape_keys", None)):
-        yield from (each.id for each in find_driver_targets(owner) if isinstance(each.id, bpy.types.Object))
+        yield from driving(owner)
+
+
+def driving(owner: bpy.types.ID | None) -> Iterator[bpy.types.Object]:
+    """Objects that the drivers of a data-block read."""
+    yield from (each.id for each in find_driver_targets(owner) if isinstance(each.id, bpy.types.Object))
 
 
 def find_driver_targets(owner: bpy.types.ID | None) -> Iterator[bpy.types.DriverTarget]:

@@ -11,16 +11,22 @@ import bpy
 
 from stiv.blender.scene.animation_curves import keyed_paths
 from stiv.blender.scene.dependencies import add_dependents
-from stiv.blender.scene.rig_followers import used_objects
+from stiv.blender.scene.rig_followers import driving, used_objects
 
 
 class UnkeyedValues:
-    """The present values of the keyed properties of materials, nodes, textures and particles, which copies share."""
+    """The present values of the keyed properties of data that copies share.
+
+    These are materials, nodes, textures and particles, and the objects that their drivers read.
+    """
 
     def __init__(self) -> None:
         """Read the values."""
-        blocks = [block for block in _shared_blocks() if block.library is None and is_keyed(block)]
-        self._values = [(block, path, value) for block in blocks for path, value in _keyed_values(block)]
+        shared = list(_shared_blocks())
+        read, _ = _reached([ob for block in shared for ob in driving(block)])
+        blocks = [*shared, *(block for ob in read.values() for block in (ob, *data_of(ob)))]
+        keyed = [block for block in blocks if block.library is None and is_keyed(block)]
+        self._values = [(block, path, value) for block in keyed for path, value in _keyed_values(block)]
 
     def restore(self) -> bool:
         """Write the values that differ now; False if none does."""
@@ -53,6 +59,15 @@ def _read(block: bpy.types.ID, path: str) -> Any:
 
 def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
     """Animated objects on which these depend, and those between."""
+    found, used_by = _reached(objects)
+    given = {ob.session_uid for ob in objects}
+    animated = {number for number, ob in found.items() if any(map(is_keyed, (ob, *data_of(ob))))}
+    chosen = add_dependents(animated, used_by) - given
+    return [ob for number, ob in found.items() if number in chosen]
+
+
+def _reached(objects: Sequence[bpy.types.Object]) -> tuple[dict[int, bpy.types.Object], dict[int, set[int]]]:
+    """These objects and all on which they depend, by number, and the numbers of those that each uses."""
     found: dict[int, bpy.types.Object] = {}
     used_by: dict[int, set[int]] = {}
     waiting = list(objects)
@@ -64,10 +79,7 @@ def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object
             found[user.session_uid] = user
             used_by[user.session_uid] = {each.session_uid for each in used}
             waiting += used
-    given = {ob.session_uid for ob in objects}
-    animated = {number for number, ob in found.items() if any(map(is_keyed, (ob, *data_of(ob))))}
-    chosen = add_dependents(animated, used_by) - given
-    return [ob for number, ob in found.items() if number in chosen]
+    return found, used_by
 
 
 def data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
