@@ -108,6 +108,21 @@ def test_a_value_of_a_shape_key_that_is_not_keyed_yet_stays() -> None:
     np.testing.assert_allclose(evaluated(cube), before, atol=1e-6)
 
 
+@pytest.mark.parametrize("guard", ["auto", "both"])
+def test_the_cage_of_an_object_with_an_unkeyed_place_is_guarded_there(guard: str) -> None:
+    cube = keyed_cube()
+    add_modifier(cube, "SUBSURF", levels=0, render_levels=1)
+    cube.location.z += 1
+    bpy.context.view_layer.update()
+    edit_mode(cube)
+    bpy.ops.mesh.select_all(action="SELECT")
+    edit = BlenderEdit.begin(bpy.context, EditSettings(guard=guard), "move")
+    assert edit.guard.choice == "both" and edit.apply(shift(z=-5.0)).status != "reached" and edit.write().passed
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    assert 0 < lowest(cube) < 0.1 and cube.location.z == 3
+
+
 @pytest.mark.parametrize("driven", ["shape key", "material"])
 def test_an_object_that_drivers_read_keeps_a_place_that_is_not_keyed_yet(driven: str) -> None:
     cube, other = keyed_cube(), add_cube("Other", (9, 0, 0))

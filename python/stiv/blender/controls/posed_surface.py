@@ -325,7 +325,7 @@ class RigTwin:
         own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
         own_data += [ob for ob in objects if ob.name in worn and ob not in own_data]
         wanted = {each.session_uid for each in (*shown, *rigs)}
-        self._copies = EvaluationCopies(scene, evaluation, own_data, as_shown=True)
+        self._copies = EvaluationCopies(scene, evaluation, own_data)
         try:
             self._copies.fill(objects, lambda ob: ob.session_uid in wanted)
             self._rigs = {each.session_uid: self._copies.copy_of(each) for each in rigs}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Copies of objects in a scene of their own, which Blender evaluates as in Object Mode or as rendered.
 
+Values that are not keyed yet count as they are, in the render too: an edit is to hold once they are keyed.
 They exist only inside a `with` statement, so no undo step, file or handler outside it sees them.
 """
 
@@ -28,20 +29,9 @@ TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_sub
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
-    def __init__(
-        self,
-        home: bpy.types.Scene,
-        evaluation: str,
-        own_data: Collection[bpy.types.Object] = (),
-        *,
-        as_shown: bool = False,
-    ) -> None:
-        """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too.
-
-        as_shown: values that are not keyed yet stay in the render too, where Blender shows the keyframes.
-        """
+    def __init__(self, home: bpy.types.Scene, evaluation: str, own_data: Collection[bpy.types.Object] = ()) -> None:
+        """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too."""
         self._evaluation = evaluation
-        self._keeps_values = as_shown or evaluation != RENDER
         self._own_data = frozenset(ob.session_uid for ob in own_data)
         self._made: list[bpy.types.ID] = []
         self._copies: dict[int, bpy.types.Object] = {}
@@ -62,7 +52,7 @@ class EvaluationCopies:
         for ob in filter(shown, objects):
             self.scene.collection.objects.link(self._copies[ob.session_uid])
         self.scene.view_layers[0].update()
-        if unkeyed.restore():  # also in the render: all evaluations share these data
+        if unkeyed.restore():
             self.scene.view_layers[0].update()
 
     @property
@@ -108,9 +98,8 @@ class EvaluationCopies:
         if ob.session_uid in self._own_data or getattr(ob.data, "is_editmode", False) or _has_data_to_copy(ob):
             twin.data = ob.data.copy()
             self._made.append(twin.data)
-        if self._keeps_values:
-            for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
-                forget_keyframes(each)
+        for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
+            forget_keyframes(each)
         self._users[twin.session_uid] = ob
         if self._evaluation == RENDER:
             _as_rendered(twin)
