@@ -180,3 +180,19 @@ def test_constraints_of_an_unknown_kind_have_no_effect() -> None:
     """Blender gives those of a newer version no properties."""
     assert not has_effect(SimpleNamespace(name="Newer"))  # type: ignore[arg-type]
     assert [has_effect(SimpleNamespace(mute=mute)) for mute in (False, True)] == [True, False]  # type: ignore[arg-type]
+
+
+def test_a_reference_image_that_modifiers_use_is_copied_too() -> None:
+    """Images are the only data of objects without animation data."""
+    image, parent, cube = add("Image", None, (0.5, 0, 0)), add_cube("Parent", (0, 3, 0)), add_cube("Cube", (2, 0, 0))
+    image.empty_display_type = "IMAGE"
+    image.data = bpy.data.images.new("Reference", 4, 4)
+    image.parent, parent.location.z = parent, 1
+    parent.keyframe_insert("location", frame=1)
+    add_modifier(cube, "MIRROR", mirror_object=image)
+    add_modifier(cube, "SUBSURF", levels=0, render_levels=1)
+    bpy.context.view_layer.update()
+    viewport, render = read_both()
+    check_equal(viewport, ["Cube", "Parent"])
+    as_rendered()
+    check_equal(render, ["Cube", "Parent"])

@@ -89,7 +89,7 @@ def data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
 
 def is_keyed(block: bpy.types.ID) -> bool:
     """Has a data-block an action or tracks?"""
-    animation = block.animation_data
+    animation = getattr(block, "animation_data", None)
     return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
 
 
