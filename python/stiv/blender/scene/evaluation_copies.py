@@ -98,8 +98,9 @@ class EvaluationCopies:
         if ob.session_uid in self._own_data or getattr(ob.data, "is_editmode", False) or _has_data_to_copy(ob):
             twin.data = ob.data.copy()
             self._made.append(twin.data)
-        for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
-            forget_keyframes(each)
+        if self._evaluation != RENDER or ob.visible_get():  # values of hidden objects may be those of another frame
+            for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
+                forget_keyframes(each)
         self._users[twin.session_uid] = ob
         if self._evaluation == RENDER:
             _as_rendered(twin)
