@@ -10,7 +10,7 @@ import pytest
 from building import add, add_cube, add_grid, add_lattice, add_modifier, as_rendered, edit_mode, evaluated, select
 from evaluation_reading import kept, read_both, read_evaluation
 
-from stiv.blender.scene.dependencies import has_effect
+from stiv.blender.scene.dependencies import is_enabled
 from stiv.blender.scene.evaluated_scene import read_scene
 
 
@@ -176,10 +176,10 @@ def test_copies_are_at_the_frame_of_the_scene() -> None:
     check_equal(render, ["Cube"])
 
 
-def test_constraints_of_an_unknown_kind_have_no_effect() -> None:
+def test_constraints_of_an_unknown_type_are_not_enabled() -> None:
     """Blender gives those of a newer version no properties."""
-    assert not has_effect(SimpleNamespace(name="Newer"))  # type: ignore[arg-type]
-    assert [has_effect(SimpleNamespace(mute=mute)) for mute in (False, True)] == [True, False]  # type: ignore[arg-type]
+    assert not is_enabled(SimpleNamespace(name="Newer"))  # type: ignore[arg-type]
+    assert [is_enabled(SimpleNamespace(mute=mute)) for mute in (False, True)] == [True, False]  # type: ignore[arg-type]
 
 
 def test_a_reference_image_that_modifiers_use_is_copied_too() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.scene.animation_curves import driven_paths, keyed_paths
 from stiv.blender.scene.arrays import as_matrix
-from stiv.blender.scene.dependencies import has_effect
+from stiv.blender.scene.dependencies import is_enabled
 from stiv.blender.scene.references import type_name
 
 TRANSFORM_PATHS = ("location", "rotation", "scale", "delta_")
@@ -61,7 +61,7 @@ def is_keyed(ob: bpy.types.Object) -> bool:
 def check_unconstrained(ob: bpy.types.Object) -> None:
     """Refuse an object with active constraints. Raises InputError."""
     for constraint in ob.constraints:
-        if has_effect(constraint) and constraint.influence > 0:
+        if is_enabled(constraint) and constraint.influence > 0:
             raise _refusal(ob, "constraint", other=constraint.name)
 
 

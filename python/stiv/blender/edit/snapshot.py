@@ -14,6 +14,7 @@ from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
 from stiv.blender.controls.participants import nothing_movable
 from stiv.blender.edit.sessions import assemble_with_controls
+from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.dependencies import find_dependents
@@ -97,10 +98,7 @@ def _is_animated(participant: Participant) -> bool:
     ob = participant.reference.find()
     if participant.role == "rigid":
         return is_keyed(ob)
-    if participant.role != "bones":
-        return False
-    animation = ob.animation_data
-    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
+    return participant.role == "bones" and is_animated(ob)
 
 
 def _nothing_moves(participants: Sequence[Participant], solid: Sequence[VisibleMesh]) -> InputError:

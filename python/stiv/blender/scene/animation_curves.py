@@ -20,6 +20,12 @@ def keyed_paths(data: bpy.types.ID) -> set[str]:
     return {curve.data_path for action in actions for curve in channel_curves(action) if not curve.mute}
 
 
+def is_animated(data: bpy.types.ID) -> bool:
+    """Has a data-block an action or NLA tracks?"""
+    animation = getattr(data, "animation_data", None)
+    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
+
+
 def _actions(animation: bpy.types.AnimData) -> Iterator[bpy.types.Action]:
     if animation.action is not None:
         yield animation.action

@@ -26,23 +26,23 @@ class Dependency:
 
 def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,)) -> Iterator[Dependency]:
     """Other objects that active modifiers and constraints of an object refer to."""
+    for owner in active_owners(ob, evaluations):
+        is_modifier = isinstance(owner, bpy.types.Modifier)
+        through = modifier_title(owner) if is_modifier else f'constraint "{owner.name}"'
+        yield from (Dependency(ob.name, each.name, through) for each in referenced_objects(owner) if each != ob)
+
+
+def active_owners(ob: bpy.types.Object, evaluations: Collection[str]) -> Iterator[Any]:
+    """Modifiers of an object that are active in any of these evaluations, and its enabled constraints."""
     for modifier in ob.modifiers:
         if any(is_active(modifier, ob, evaluation) for evaluation in evaluations):
-            yield from _named(ob, modifier_title(modifier), referenced_objects(modifier))
-    for constraint in ob.constraints:
-        if has_effect(constraint):
-            yield from _named(ob, f'constraint "{constraint.name}"', referenced_objects(constraint))
+            yield modifier
+    yield from filter(is_enabled, ob.constraints)
 
 
-def has_effect(constraint: bpy.types.Constraint) -> bool:
-    """Does Blender evaluate a constraint? Not one of a kind that this version does not know."""
+def is_enabled(constraint: bpy.types.Constraint) -> bool:
+    """Does Blender evaluate a constraint? Not one of a type that this version does not know."""
     return not getattr(constraint, "mute", True)
-
-
-def _named(ob: bpy.types.Object, through: str, used: Iterator[Any]) -> Iterator[Dependency]:
-    for other in used:
-        if other != ob:
-            yield Dependency(ob.name, other.name, through)
 
 
 def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:

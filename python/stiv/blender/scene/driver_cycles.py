@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import bpy
 
-from stiv.blender.scene.dependencies import has_effect, referenced_objects
+from stiv.blender.scene.dependencies import is_enabled, referenced_objects
 
 BONE = re.compile(r'pose\.bones\["((?:[^"\\]|\\.)*)"\]')
 INDEX = re.compile(r"\[\d+\]$")
@@ -96,7 +96,7 @@ class _Graph:
 
     def _add_constraints(self, node: Node, constraints: bpy.types.bpy_prop_collection) -> Iterator[bpy.types.ID]:
         for constraint in constraints:
-            if not has_effect(constraint):
+            if not is_enabled(constraint):
                 continue
             subtarget = getattr(constraint, "subtarget", "")
             for other in referenced_objects(constraint):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Copies of objects in a scene of their own, which Blender evaluates as in Object Mode or as rendered.
 
-Values that are not keyed yet count as they are, in the render too: an edit is to hold once they are keyed.
 They exist only inside a `with` statement, so no undo step, file or handler outside it sees them.
+Values that are not keyed yet count as they are, also in the render, so that an edit holds once they are keyed.
+Rendered objects that the viewport hides follow their keyframes.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from typing import Any
 
 import bpy
 
+from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import driving, find_driver_targets
-from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, data_of, forget_keyframes, is_keyed
+from stiv.blender.scene.rig_followers import data_of, driving, find_driver_targets
+from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, forget_keyframes
 
 NAME = "STIV Evaluation"
 COPIED_TYPES = ("CURVE", "SURFACE", "FONT", "META")  # their data holds the resolution
@@ -78,15 +80,12 @@ class EvaluationCopies:
 
     def _copy_settings(self, home: bpy.types.Scene) -> None:
         with _negative_frames():
-            self._copy_time(home)
-        if self._evaluation == RENDER:
-            self.scene.render.simplify_subdivision = home.render.simplify_subdivision_render
-
-    def _copy_time(self, home: bpy.types.Scene) -> None:
-        for name in SCENE_SETTINGS:
-            setattr(self.scene, name, getattr(home, name))
+            for name in SCENE_SETTINGS:
+                setattr(self.scene, name, getattr(home, name))
         for name in TIME_SETTINGS:
             setattr(self.scene.render, name, getattr(home.render, name))
+        if self._evaluation == RENDER:
+            self.scene.render.simplify_subdivision = home.render.simplify_subdivision_render
 
     def _copy(self, ob: bpy.types.Object) -> bpy.types.Object:
         if is_edited(ob):
@@ -99,7 +98,7 @@ class EvaluationCopies:
             twin.data = ob.data.copy()
             self._made.append(twin.data)
         if self._evaluation != RENDER or ob.visible_get():  # values of hidden objects may be those of another frame
-            for each in (twin, *data_of(twin)) if twin.data in self._made else (twin,):
+            for each in self._copied_blocks(twin):
                 forget_keyframes(each)
         self._users[twin.session_uid] = ob
         if self._evaluation == RENDER:
@@ -110,6 +109,10 @@ class EvaluationCopies:
             for copied, modifier in zip(twin.modifiers, ob.modifiers, strict=True):
                 copied.show_viewport = is_active(modifier, ob)
         return twin
+
+    def _copied_blocks(self, twin: bpy.types.Object) -> list[bpy.types.ID]:
+        """A copy of an object, with its data and shape keys if these are copies too."""
+        return [twin, *(data_of(twin) if twin.data in self._made else ())]
 
     def _replace_references(self, twin: bpy.types.Object) -> None:
         """Replace the references of a copy by references to copies."""
@@ -122,8 +125,7 @@ class EvaluationCopies:
             if isinstance(owner, bpy.types.ArmatureConstraint):
                 for target in owner.targets:
                     self._replace_reference(target, "target", target.target, setattr)
-        copied = [] if twin.data not in self._made else [twin.data, getattr(twin.data, "shape_keys", None)]
-        for target in (each for owner in (twin, *copied) for each in find_driver_targets(owner)):
+        for target in (each for owner in self._copied_blocks(twin) for each in find_driver_targets(owner)):
             self._replace_reference(target, "id", target.id, setattr)
         if twin.parent is not None and twin.parent.session_uid in self._copies:
             inverse = twin.matrix_parent_inverse.copy()
@@ -167,7 +169,7 @@ def _has_data_to_copy(ob: bpy.types.Object) -> bool:
     """Would data that a copy shares be changed, or refer to originals? Rigs are posed by their objects."""
     if ob.type == "ARMATURE":
         return False
-    return ob.type in COPIED_TYPES or any(is_keyed(each) or any(driving(each)) for each in data_of(ob))
+    return ob.type in COPIED_TYPES or any(is_animated(each) or any(driving(each)) for each in data_of(ob))
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from stiv.blender.scene.dependencies import add_dependents, has_effect, referenced_objects, shape_dependencies
+from stiv.blender.scene.dependencies import add_dependents, is_enabled, referenced_objects, shape_dependencies
 from stiv.blender.scene.evaluations import (
     RENDER,
     SHOWN,
@@ -138,7 +138,7 @@ def _placing(ob: bpy.types.Object) -> Iterator[tuple[int, bool]]:
         if ob.parent_type in SHAPE_PARENTS or ob.parent.type == "CURVE":
             yield ob.parent.session_uid, SHAPE
     for constraint in ob.constraints:
-        for used in referenced_objects(constraint) if has_effect(constraint) else ():
+        for used in referenced_objects(constraint) if is_enabled(constraint) else ():
             yield used.session_uid, PLACE
             if constraint.type in SHAPE_CONSTRAINTS or getattr(constraint, "subtarget", False):
                 yield used.session_uid, SHAPE

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import bpy
 
-from stiv.blender.scene.dependencies import add_dependents, has_effect, referenced_objects
-from stiv.blender.scene.evaluations import RENDER, VIEWPORT, is_active
+from stiv.blender.scene.dependencies import active_owners, add_dependents, is_enabled, referenced_objects
+from stiv.blender.scene.evaluations import RENDER, VIEWPORT
 
 
 def find_followers(scene: bpy.types.Scene, rigs: set[str]) -> set[str]:
@@ -19,8 +19,7 @@ def find_followers(scene: bpy.types.Scene, rigs: set[str]) -> set[str]:
 
 def used_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Objects on which the shape or the place of an object depends, in the viewport or as rendered."""
-    active = [each for each in ob.modifiers if is_active(each, ob, VIEWPORT) or is_active(each, ob, RENDER)]
-    for owner in (*active, *filter(has_effect, ob.constraints)):
+    for owner in active_owners(ob, (VIEWPORT, RENDER)):
         yield from referenced_objects(owner)
     if ob.parent is not None:
         yield ob.parent
@@ -32,21 +31,26 @@ def posing_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Objects that active constraints of an object's bones refer to."""
     for bone in () if ob.pose is None else ob.pose.bones:
         for constraint in bone.constraints:
-            yield from referenced_objects(constraint) if has_effect(constraint) else ()
+            yield from referenced_objects(constraint) if is_enabled(constraint) else ()
 
 
 def driving_objects(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:
     """Objects that the drivers of an object, its data and its shape keys read."""
-    for owner in (ob, ob.data, getattr(ob.data, "shape_keys", None)):
+    for owner in (ob, *data_of(ob)):
         yield from driving(owner)
 
 
-def driving(owner: bpy.types.ID | None) -> Iterator[bpy.types.Object]:
+def data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
+    """The data of an object, and its shape keys."""
+    return [each for each in (ob.data, getattr(ob.data, "shape_keys", None)) if each is not None]
+
+
+def driving(owner: bpy.types.ID) -> Iterator[bpy.types.Object]:
     """Objects that the drivers of a data-block read."""
     yield from (each.id for each in find_driver_targets(owner) if isinstance(each.id, bpy.types.Object))
 
 
-def find_driver_targets(owner: bpy.types.ID | None) -> Iterator[bpy.types.DriverTarget]:
+def find_driver_targets(owner: bpy.types.ID) -> Iterator[bpy.types.DriverTarget]:
     """The targets of the drivers of an ID."""
     animation = getattr(owner, "animation_data", None)
     for curve in () if animation is None else animation.drivers:

@@ -9,9 +9,9 @@ from typing import Any
 
 import bpy
 
-from stiv.blender.scene.animation_curves import keyed_paths
+from stiv.blender.scene.animation_curves import is_animated, keyed_paths
 from stiv.blender.scene.dependencies import add_dependents
-from stiv.blender.scene.rig_followers import driving, used_objects
+from stiv.blender.scene.rig_followers import data_of, driving, used_objects
 
 
 class UnkeyedValues:
@@ -25,8 +25,8 @@ class UnkeyedValues:
         shared = list(_shared_blocks())
         read, _ = _reached([ob for block in shared for ob in driving(block)])
         blocks = [*shared, *(block for ob in read.values() for block in (ob, *data_of(ob)))]
-        keyed = [block for block in blocks if block.library is None and is_keyed(block)]
-        self._values = [(block, path, value) for block in keyed for path, value in _keyed_values(block)]
+        animated = [block for block in blocks if block.library is None and is_animated(block)]
+        self._values = [(block, path, value) for block in animated for path, value in _keyed_values(block)]
 
     def restore(self) -> bool:
         """Write the values that differ now; False if none does."""
@@ -61,7 +61,7 @@ def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object
     """Animated objects on which these depend, and those between."""
     found, used_by = _reached(objects)
     given = {ob.session_uid for ob in objects}
-    animated = {number for number, ob in found.items() if any(map(is_keyed, (ob, *data_of(ob))))}
+    animated = {number for number, ob in found.items() if any(map(is_animated, (ob, *data_of(ob))))}
     chosen = add_dependents(animated, used_by) - given
     return [ob for number, ob in found.items() if number in chosen]
 
@@ -82,20 +82,9 @@ def _reached(objects: Sequence[bpy.types.Object]) -> tuple[dict[int, bpy.types.O
     return found, used_by
 
 
-def data_of(ob: bpy.types.Object) -> list[bpy.types.ID]:
-    """The data of an object, and its shape keys."""
-    return [each for each in (ob.data, getattr(ob.data, "shape_keys", None)) if each is not None]
-
-
-def is_keyed(block: bpy.types.ID) -> bool:
-    """Has a data-block an action or tracks?"""
-    animation = getattr(block, "animation_data", None)
-    return animation is not None and (animation.action is not None or len(animation.nla_tracks) > 0)
-
-
 def forget_keyframes(copy: bpy.types.ID) -> None:
     """Let a copy keep its present values. Drivers stay."""
-    if is_keyed(copy):
+    if is_animated(copy):
         copy.animation_data.use_tweak_mode = False
         copy.animation_data.use_nla = False
         copy.animation_data.action = None
