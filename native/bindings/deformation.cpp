@@ -128,7 +128,7 @@ SharedFunction share(py::object function) {
   });
 }
 
-std::shared_ptr<ObservedDeformation> observe(py::object evaluate, Jacobian jacobian) {
+std::shared_ptr<ObservedDeformation> observe(py::object evaluate, Jacobian jacobian, std::vector<Index> rotation_rows) {
   return make_observed(
       [function = share(std::move(evaluate))](const Controls& p) -> std::optional<Positions> {
         const py::gil_scoped_acquire locked;
@@ -136,17 +136,17 @@ std::shared_ptr<ObservedDeformation> observe(py::object evaluate, Jacobian jacob
         if (value.is_none()) return std::nullopt;
         return value.cast<Positions>();
       },
-      std::move(jacobian));
+      std::move(jacobian), std::move(rotation_rows));
 }
 
 void bind_observed(py::module_& module) {
   const py::arg starts("starts"), controls("controls"), values("values"), control_count("control_count");
   py::class_<ObservedDeformation, Deformation, std::shared_ptr<ObservedDeformation>>(module, "ObservedDeformation")
       .def(py::init([](py::object evaluate, const Array<Index>& rows, const Array<Index>& columns,
-                       const Array<double>& entries, Index count) {
-             return observe(std::move(evaluate), jacobian_of(rows, columns, entries, count));
+                       const Array<double>& entries, Index count, std::vector<Index> rotation_rows) {
+             return observe(std::move(evaluate), jacobian_of(rows, columns, entries, count), std::move(rotation_rows));
            }),
-           py::arg("evaluate"), starts, controls, values, control_count)
+           py::arg("evaluate"), starts, controls, values, control_count, py::arg("rotation_rows"))
       .def(
           "replace_jacobian",
           [](ObservedDeformation& deformation, const Array<Index>& rows, const Array<Index>& columns,

@@ -136,6 +136,7 @@ class ObservedDeformation(Deformation):
         controls: Annotated[ArrayLike, int32],
         values: Annotated[ArrayLike, float64],
         control_count: int,
+        rotation_rows: ArrayLike,
     ) -> None: ...
     def replace_jacobian(
         self,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Deformations by a function of the caller, with a Jacobian that directs the response."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,14 +21,14 @@ Rows = tuple[Indices, Indices, Floats, tuple[int, int]]  # indptr, indices, data
 class ObservedDeformation(_native.ObservedDeformation):
     """A deformation q = f(p) by a function of the caller; see :func:`stiv.observed`."""
 
-    def __init__(self, evaluate: Evaluate, jacobian: Any) -> None:
+    def __init__(self, evaluate: Evaluate, jacobian: Any, rotation_rows: Sequence[int] = ()) -> None:
         indptr, indices, data, (rows, columns) = _as_rows(jacobian)
 
         def checked(controls: Floats) -> Floats | None:
             surface = evaluate(controls)
             return None if surface is None else as_reals(surface, "result of evaluate", (rows, 3))
 
-        super().__init__(checked, indptr, indices, data, columns)
+        super().__init__(checked, indptr, indices, data, columns, list(rotation_rows))
 
     def set_jacobian(self, jacobian: Any) -> None:
         """Replace the Jacobian, given as in :func:`stiv.observed`, between calls of sessions.
@@ -44,7 +44,7 @@ class ObservedDeformation(_native.ObservedDeformation):
         self.replace_jacobian(indptr, indices, data, shape[1])
 
 
-def observed(evaluate: Evaluate, jacobian: Any) -> ObservedDeformation:
+def observed(evaluate: Evaluate, jacobian: Any, rotation_rows: Sequence[int] = ()) -> ObservedDeformation:
     """Return q = f(p) for a function of yours.
 
     The surface comes from `evaluate` alone, so the guarantee is that of other deformations: every accepted state is a
@@ -60,10 +60,12 @@ def observed(evaluate: Evaluate, jacobian: Any) -> ObservedDeformation:
               block[a, b] is the derivative of a vertex's coordinate a by a control's coordinate b. Blocks are a
               bsr_array of SciPy with blocks of (3, 3), a tuple (indptr, indices, data, (n, m)) in CSR format with data
               of shape (k, 3, 3), or a dense array (n, 3, m, 3)
+    rotation_rows  controls that are rotation vectors (radians) instead of points, ascending. Their increments are
+              composed as rotations, and large ones are split into steps
 
     Raises InputError naming the row: inconsistent lists, a control out of range, a number that is not finite.
     """
-    return ObservedDeformation(evaluate, jacobian)
+    return ObservedDeformation(evaluate, jacobian, rotation_rows)
 
 
 def _as_rows(jacobian: Any) -> Rows:

@@ -307,6 +307,24 @@ def drags(threads: int, as_jobs: bool) -> tuple[list[Floats], Counted]:
     return states, evaluate
 
 
+def test_rotations_by_a_function_take_the_steps_of_a_rigid_body() -> None:
+    rest = np.asarray(REST)
+    body, start = stiv.rigid(rest), stiv.rigid_rest_controls(rest)
+    goal = start + [[0, 0, 0], [0, 3.0, 0]]
+    units = np.eye(6).reshape(6, 2, 3)
+    jacobian = np.stack([body.push_forward(start, unit) for unit in units], axis=-1).reshape(len(rest), 3, 2, 3)
+    paths = []
+    for moving in (body, stiv.observed(body.surface, jacobian, [1])):
+        assert moving.rotation_rows == [1]
+        result = stiv.EditSession(stiv.Surface(FACES, len(rest)), moving, start).drag(goal)
+        assert result.status == "reached"
+        paths.append(np.array(result.path))
+    assert len(paths[0]) >= 10 and np.array_equal(*paths) and np.allclose(paths[0][-1], goal, atol=1e-6)
+    for rows in ([2], [-1], [1, 1], [1, 0]):
+        with pytest.raises(stiv.InputError, match=r"rotation_rows: -?\d is not in ascending order"):
+            stiv.observed(body.surface, jacobian, rows)
+
+
 def test_jobs_and_threads_give_the_same_bits_with_calls_in_this_thread() -> None:
     expected, evaluate = drags(1, False)
     for threads, as_jobs in ((2, False), (1, True), (2, True)):

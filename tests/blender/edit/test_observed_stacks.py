@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 import pytest
 import stack_trials
-from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot
+from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot, stretch, turn
 from evaluation_reading import kept
 from stack_trials import WAYS, kept_motion, open_piece, run_random_trial, run_trial
 from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin, subdivided
@@ -65,6 +65,49 @@ TRIALS += [(name, way) for name in KINDS for way in WAYS if (name, way) != ("Tex
 def test_objects_bent_by_others_and_kinds_of_data_are_followed(name: str, way: str) -> None:
     outcome = run_trial((STACKS | KINDS)[name], way, 1, 3)
     assert outcome.verdict == "followed", outcome.text
+
+
+BENT = ("Armature", "Armature, Subdivision Surface", "Curve", "Hook", "Lattice", "Mesh Deform")
+TRANSFORMS = {"rotate": turn(2.2, "Y", (0.4, -0.2, 0.1)), "scale": stretch((1.3, 1.3, 1.3), (0.4, -0.2, 0.1))}
+
+
+@pytest.mark.parametrize("kind", TRANSFORMS)
+@pytest.mark.parametrize("name", BENT)
+def test_objects_bent_by_others_are_rotated_and_scaled_as_by_blender(name: str, kind: str) -> None:
+    ob = STACKS[name]()
+    select(ob)
+    bpy.context.view_layer.update()
+    goal = TRANSFORMS[kind] @ as_matrix(ob.matrix_world)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    assert edit.drag(TRANSFORMS[kind]).status == "reached"
+    assert edit.write().passed
+    assert as_matrix(ob.matrix_world) == pytest.approx(goal, abs=1e-6)
+    assert len(bpy.data.scenes) == 1
+
+
+@pytest.mark.parametrize("name", [name for name in BENT if name != "Curve"])  # that lifts the sheet off the body
+def test_rotations_of_objects_bent_by_others_stop_at_contacts(name: str) -> None:
+    """Where Blender's own rotation first intersects, or beyond; the object turns about the given pivot alone."""
+    ob = STACKS[name]()
+    add_body()
+    select(ob)
+    start, pivot = as_matrix(ob.matrix_world), np.array([-0.2, 0.1, 0.05])
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "rotate")
+    for angle in (0.4, 0.8, 1.2):
+        edit.drag(turn(angle, "Y", pivot))
+        assert edit.write().passed
+    assert meet("Piece", "Body") == 0 and check_scene(bpy.context).pairs == ()
+    motion = as_matrix(ob.matrix_world) @ np.linalg.inv(start)
+    reached = np.arctan2(motion[0, 2], motion[0, 0])
+    assert motion == pytest.approx(turn(reached, "Y", pivot), abs=1e-5)
+    angles = np.linspace(0, 1.2, 61)
+    first = next((angle for angle in angles if _meets_at(ob, turn(angle, "Y", pivot) @ start)), 1.2)
+    assert 0.2 < first - 0.05 <= reached < 1.19
+
+
+def _meets_at(ob: Any, world: np.ndarray) -> bool:
+    ob.matrix_world = world.T.tolist()
+    return meet("Piece", "Body") > 0
 
 
 # 140: a Triangulate modifier turned diagonals unseen; 20258: a Curve modifier turns a motion down to the side

@@ -43,7 +43,9 @@ class ObservedDeformation : public SparseJacobianDeformation {
   virtual void set_jacobian(Jacobian jacobian) = 0;
 };
 
-/// @throws InputError naming the row of a number in J that is not finite
-std::shared_ptr<ObservedDeformation> make_observed(Evaluation evaluate, Jacobian jacobian);
+/// rotation_rows: ascending rows of the controls that are rotation vectors. (deformation.hpp)
+/// @throws InputError naming the row of a number in J that is not finite, or a rotation row that is not a control
+std::shared_ptr<ObservedDeformation> make_observed(Evaluation evaluate, Jacobian jacobian,
+                                                   std::vector<Index> rotation_rows = {});
 
 }  // namespace stiv

@@ -21,16 +21,30 @@ std::shared_ptr<const JacobianProducts> checked_products(Jacobian jacobian) {
   return std::make_shared<JacobianProducts>(std::move(jacobian));
 }
 
+void check_ascending(const std::vector<Index>& rotation_rows, Index controls) {
+  Index least = 0;
+  for (const Index row : rotation_rows) {
+    if (row < least || row >= controls)
+      throw InputError("rotation_rows: " + std::to_string(row) + " is not in ascending order, or not one of " +
+                       std::to_string(controls) + " controls");
+    least = row + 1;
+  }
+}
+
 class Observed final : public ObservedDeformation {
  public:
-  Observed(Evaluation evaluate, Jacobian jacobian)
+  Observed(Evaluation evaluate, Jacobian jacobian, std::vector<Index> rotation_rows)
       : products_(checked_products(std::move(jacobian))),
         control_count_(products_->control_count()),
         vertex_count_(products_->vertex_count()),
-        evaluation_(std::move(evaluate), vertex_count_) {}
+        evaluation_(std::move(evaluate), vertex_count_),
+        rotation_rows_(std::move(rotation_rows)) {
+    check_ascending(rotation_rows_, control_count_);
+  }
 
   Index control_count() const override { return control_count_; }
   Index vertex_count() const override { return vertex_count_; }
+  std::vector<Index> rotation_rows() const override { return rotation_rows_; }
 
   Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count_);
@@ -78,14 +92,16 @@ class Observed final : public ObservedDeformation {
   std::shared_ptr<const JacobianProducts> products_;
   Index control_count_, vertex_count_;
   StoredEvaluation evaluation_;
+  std::vector<Index> rotation_rows_;
   std::uint64_t revision_ = 0;
   mutable std::mutex mutex_;  ///< of J
 };
 
 }  // namespace
 
-std::shared_ptr<ObservedDeformation> make_observed(Evaluation evaluate, Jacobian jacobian) {
-  return std::make_shared<Observed>(std::move(evaluate), std::move(jacobian));
+std::shared_ptr<ObservedDeformation> make_observed(Evaluation evaluate, Jacobian jacobian,
+                                                   std::vector<Index> rotation_rows) {
+  return std::make_shared<Observed>(std::move(evaluate), std::move(jacobian), std::move(rotation_rows));
 }
 
 }  // namespace stiv

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deformation of objects that move as a whole below modifiers that refer to other objects, which stay.
+"""Deformation of objects that are moved, rotated or scaled below modifiers that refer to other objects, which stay.
 
 Blender evaluates these modifiers on hidden copies in other places.
 """
@@ -14,7 +14,7 @@ import mathutils
 import numpy as np
 
 import stiv
-from stiv.blender.controls.rotations import affine_about, rotation_matrix
+from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
@@ -22,20 +22,23 @@ from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_p
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, different_objects, kept_twin, kept_twins
 
-STEP = 1e-3  # of the differences for a Jacobian: in sizes of the surface, and in radians
+STEP = 1e-3  # of the differences for a Jacobian: in sizes of the surface, and in radians or factors
 
 
 class PlacedStack:
-    """The surfaces of a rigid group from its centre and rotation vector, (2, 3).
+    """The surfaces of a rigid group from its centre and its rotation vector or scale factors, (2, 3).
 
     Attributes:
         deformation: infeasible where the topology of a mesh differs from that at the start.
     """
 
-    def __init__(self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats) -> None:
+    def __init__(
+        self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats, motion: PlacementMotion
+    ) -> None:
         """bent: names of the objects whose shape depends on their place. controls: at the start, (2, 3)."""
-        self._placements = _Placements(meshes, bent, controls)
-        self.deformation = stiv.observed(self._placements.evaluate, self._placements.jacobian())
+        self._placements = _Placements(meshes, bent, controls, motion)
+        jacobian = self._placements.jacobian()
+        self.deformation = stiv.observed(self._placements.evaluate, jacobian, motion.rotation_rows)
 
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation."""
@@ -59,8 +62,10 @@ class _PlacedMesh:
 class _Placements:
     """The surfaces of a group. Apart from `PlacedStack`, as the core holds `evaluate`: no cycle of references."""
 
-    def __init__(self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats) -> None:
-        self._pivot, self._last = controls[0], controls
+    def __init__(
+        self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats, motion: PlacementMotion
+    ) -> None:
+        self._motion, self._last = motion, controls
         self._rest = [each.world() for each in meshes]
         self._bent = [
             _PlacedMesh(each.owner, each.read_from, each.matrix) if each.owner.name in bent else None for each in meshes
@@ -70,8 +75,8 @@ class _Placements:
         self._size = float(np.ptp(np.concatenate(self._rest), axis=0).max(initial=0.0)) or 1.0
 
     def evaluate(self, controls: Floats) -> Floats | None:
-        """World positions, (n, 3), from centre and rotation vector; None if the topology of a mesh differs."""
-        motion = affine_about(self._pivot, rotation_matrix(controls[1]), controls[0])
+        """World positions, (n, 3), from the controls; None if the topology of a mesh differs."""
+        motion = self._motion.matrix(controls)
         found = []
         with kept_twins():
             for bent, start, rest in zip(self._bent, self._start, self._rest, strict=True):

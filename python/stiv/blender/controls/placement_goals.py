@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,6 +13,7 @@ from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.directions import ALL_FREE, NONE_FREE, FreeDirections
 from stiv.blender.controls.motion import Motion
+from stiv.blender.controls.placed_stack import PlacedStack
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.controls.response import Response
 from stiv.blender.controls.rotations import nearest_equivalent, nearest_rotation, rotation_vector
@@ -94,16 +96,19 @@ class PlacementGoal:
 
 
 class PivotDeformation:
-    """Rotation of a group about the pivot of a drag; kept while the pivot stays. `rest`, (n, 3), is its surface."""
+    """Rotation of a group about the pivot of a drag; kept while the pivot stays.
 
-    def __init__(self, rest: Floats) -> None:
-        self._rest = rest
-        self._made: tuple[bytes, stiv.Deformation] | None = None
+    `make` returns the deformation about a pivot, (3,), and the stack that Blender evaluates for it, if any.
+    """
 
-    def about(self, pivot: Floats) -> stiv.Deformation:
-        """The deformation for a pivot, (3,); the same object for the same pivot."""
+    def __init__(self, make: Callable[[Floats], tuple[stiv.Deformation, PlacedStack | None]]) -> None:
+        self._make = make
+        self._made: tuple[bytes, tuple[stiv.Deformation, PlacedStack | None]] | None = None
+
+    def about(self, pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
+        """The deformation for a pivot, (3,), and its stack; the same objects for the same pivot."""
         if self._made is None or self._made[0] != pivot.tobytes():
-            self._made = pivot.tobytes(), stiv.rigid(self._rest, pivot)
+            self._made = pivot.tobytes(), self._make(pivot)
         return self._made[1]
 
 
@@ -143,11 +148,13 @@ class RotationGoal(PlacementGoal):
             return control_set
         turning = ALL_FREE if self.free_axis and motion.free is None else FreeDirections.line(axis)
         assert isinstance(control_set.writer, PlacementWriter)
+        deformation, placed = self.about.about(pivot)
         return replace(
             respond(control_set, NONE_FREE, turning, weight),
-            deformation=self.about.about(pivot),
+            deformation=deformation,
+            placed=placed,
             rule=replace(self, axis=None if turning is ALL_FREE else axis, pivoting=True),
-            writer=replace(control_set.writer, pivot=pivot),
+            writer=replace(control_set.writer, motion=replace(control_set.writer.motion, pivot=pivot)),
         )
 
     def _pivot(self, motion: Motion) -> Floats:

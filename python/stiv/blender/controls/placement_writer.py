@@ -7,9 +7,8 @@ import bpy
 import numpy as np
 
 from stiv.blender.controls.editable import is_keyed
-from stiv.blender.controls.motion import ROUNDING
 from stiv.blender.controls.object_transform import ObjectTransform, write_transform
-from stiv.blender.controls.rotations import affine_about, remove_rounding, rotation_matrix
+from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.controls.transform_locks import restore_locked
 from stiv.blender.scene.animation_curves import keyframe_options
 from stiv.blender.scene.arrays import Floats
@@ -18,31 +17,21 @@ from stiv.blender.scene.references import ObjectReference
 
 @dataclass(frozen=True)
 class PlacementWriter:
-    """Writes location, and rotation or scale, of the roots of a group.
-
-    `centre`, (3,), is that at the start; the rotation or scale is about `pivot`, (3,).
-    """
+    """Writes location, and rotation or scale, of the roots of a group."""
 
     references: tuple[ObjectReference, ...]
     starts: tuple[ObjectTransform, ...]
-    centre: Floats
-    axes: Floats | None
-    pivot: Floats
+    motion: PlacementMotion
 
     def write(self, controls: Floats) -> None:
         """Write centre and rotation vector, or centre and scale factors, (2, 3)."""
-        if self.axes is None:
-            linear, factors = rotation_matrix(remove_rounding(controls[1], unit=1.0)), np.ones(3)
-        else:
-            factors = _equalised(controls[1])
-            linear = (self.axes * factors) @ self.axes.T
-        motion = affine_about(self.pivot, linear, self.pivot + remove_rounding(controls[0] - self.centre))
+        motion, factors = self.motion.matrix(controls), self.motion.factors(controls)
         for ob, start in self._objects():
             if np.array_equal(motion, np.eye(4)):
                 start.restore(ob)
             else:
                 write_transform(ob, start, motion, factors)
-                if self.axes is None:
+                if self.motion.axes is None:
                     restore_locked(ob, start)
 
     def restore(self) -> None:
@@ -63,9 +52,3 @@ class PlacementWriter:
 
     def _objects(self) -> list[tuple[bpy.types.Object, ObjectTransform]]:
         return [(reference.find(), start) for reference, start in zip(self.references, self.starts, strict=True)]
-
-
-def _equalised(factors: Floats) -> Floats:
-    """Factors, (3,), that differ only by rounding become equal."""
-    mean = factors.mean()
-    return np.full(3, mean) if np.abs(factors - mean).max() <= ROUNDING * abs(mean) else factors

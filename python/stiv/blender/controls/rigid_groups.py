@@ -30,8 +30,8 @@ def find_rigid_groups(participants: list[Participant], evaluations: Collection[s
     """Groups of all rigid participants, in the order of their first roots, with their dependencies in these
     evaluations.
 
-    Raises InputError for objects that cannot be moved, or that turn or yield though their shape depends on objects that
-    do not move along.
+    Raises InputError for objects that cannot be moved, or that yield, or are scaled with a parent, though their shape
+    depends on objects that do not move along.
     """
     groups = [
         _family(participant)
@@ -47,8 +47,10 @@ def _with_bent(group: RigidGroup, evaluations: Collection[str], kind: str) -> Ri
     """The group with its bent members. Raises InputError for those that Blender cannot evaluate in another place."""
     outside = _outside_dependencies(group, evaluations)
     bent = [each for each in outside if not moves_as_a_whole(bpy.data.objects[each.user])]
+    roots = {root.reference.name for root in group.roots}
     for each in bent:
-        if kind != "move" or not group.roots[0].selected or not _may_bend(each):
+        may_be_sheared = kind == "scale" and each.user not in roots
+        if may_be_sheared or not group.roots[0].selected or not _may_bend(each):
             raise InputError(f'{each.user}: {each.through} depends on "{each.used}"; select both')
     return replace(group, bent=frozenset(each.user for each in bent))
 

@@ -2,6 +2,7 @@
 """Location, rotation and scale as controls of rigid groups."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.object_transform import ObjectTransform, read_transform
 from stiv.blender.controls.placed_stack import PlacedStack
 from stiv.blender.controls.placement_goals import PivotDeformation, PlacementGoal, RotationGoal, ScaleGoal
+from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.controls.rigid_groups import RigidGroup
 from stiv.blender.controls.rotations import nearest_rotation
@@ -31,7 +33,15 @@ def make_rigid_set(
     axes = _axes(group, starts) if scales else None
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
-    placed = PlacedStack(meshes, group.bent, controls) if group.bent else None
+    motion = PlacementMotion(controls[0], controls[0], axes)
+    placed = PlacedStack(meshes, group.bent, controls, motion) if group.bent else None
+
+    def rotating(pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
+        if not group.bent:
+            return stiv.rigid(rest, pivot), None
+        stack = PlacedStack(meshes, group.bent, controls, replace(motion, pivot=pivot))
+        return stack.deformation, stack
+
     objects = [root.reference.find() for root in group.roots]
     free = None if scales else find_free_directions(objects, starts)
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
@@ -41,7 +51,7 @@ def make_rigid_set(
     if axes is not None:
         rule = ScaleGoal(**vars(rule), axes=axes)
     elif selected and kind == "rotate":
-        rule = RotationGoal(**vars(rule), about=PivotDeformation(rest), free_axis=_turns_on_contact(settings))
+        rule = RotationGoal(**vars(rule), about=PivotDeformation(rotating), free_axis=_turns_on_contact(settings))
     weight = settings.response_weight(True) if selected else 1.0
     max_weights = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
     references = tuple(root.reference for root in group.roots)
@@ -49,7 +59,7 @@ def make_rigid_set(
         tuple(reference.name for reference in references), "rigid", surfaces,
         deformation if placed is None else placed.deformation, controls,
         weight * max_weights, max_weights, None, rule,
-        PlacementWriter(references, tuple(starts), controls[0], axes, controls[0]),
+        PlacementWriter(references, tuple(starts), motion),
         weight_axes=None if free is None else np.array([free.axes, np.eye(3)]), placed=placed,
     )  # fmt: skip
 
