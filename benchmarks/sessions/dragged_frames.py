@@ -2,12 +2,14 @@
 """Drags an edit script as a user does: the mouse moves in real time, with the add-on's drag.
 
 A step with repetitions is one drag. The mouse moves through SPEED repetitions per second. Then it rests
-until nothing is left to solve, and the drag is confirmed. A tick comes every TICK seconds, or after the
-previous one. There is no window, so times include Blender's evaluation but not its drawing.
+until nothing is left to solve, and the drag is confirmed. There is no window, so times include Blender's
+evaluation but not its drawing. Ticks come when Blender's timer sends them: at multiples of TICK since its
+start, or as soon as the previous one ends if it lasts beyond them (wm_window_timers_process in wm_window.cc).
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -184,10 +186,10 @@ class _Dragging:
         return goal_matrix(self.step, where, self._pivot)
 
     def _tick(self, drag: Drag) -> None:
-        if drag.at_rest:
-            time.sleep(TICK)
-            return
         report, previous, begun = drag.report, drag.result, self._now()
+        if drag.at_rest:
+            self._await_timer(begun)
+            return
         drag.tick()
         ended = self._now()
         writes, result = drag.report is not report, drag.result
@@ -198,7 +200,11 @@ class _Dragging:
         touches = result.rounds > 0 or len(result.events) > 0
         passed = not writes or drag.report.passed
         self.ticks.append(Tick(ended, ended - begun, result.timings["total"], shown, behind, touches, passed))
-        time.sleep(max(0.0, TICK - (ended - begun)))
+        self._await_timer(begun)
+
+    def _await_timer(self, begun: float) -> None:
+        """Wait for the tick after one that began then."""
+        time.sleep(max(0.0, TICK * math.ceil(begun / TICK) - self._now()))
 
     def _is_new(self, written: Any) -> bool:
         """Whether the scene shows another shape than before."""
