@@ -31,10 +31,26 @@ Controls incremented(const EditCall& call, const Controls& followed, const Contr
   return moved_alike(call.accepted.controls, followed, goal, call.context.rotation_rows());
 }
 
-void pull(EditCall& call, const Aim& aim, double distance) {
+/// Controls on the way from `from`, close to the accepted ones, to the goal: as far as a pull of this distance goes.
+Controls pulled(const EditCall& call, const Controls& from, const Aim& aim, double distance) {
   const double missing = std::sqrt((aim.surface - call.accepted.surface).rowwise().squaredNorm().maxCoeff());
   const double fraction = missing > distance ? distance / missing : 1;
-  const Controls goal = interpolate(call.accepted.controls, aim.controls, fraction, call.context.rotation_rows());
+  return interpolate(from, aim.controls, fraction, call.context.rotation_rows());
+}
+
+/// The controls after a stride, and after a part of a pull if the call hands over: it may then end before another
+/// sub-edit could pull. Toward the goal of the stride, since later strides add the rest. Without a large body: to
+/// search further costs it more.
+Controls incremented_and_pulled(const EditCall& call, const DragProgress& drag, const State& next) {
+  const Controls increment = incremented(call, drag.followed.controls, next.controls);
+  const bool moves = call.context.stored(increment) != call.accepted.controls;
+  if (!moves || !call.hand_over || call.context.has_large_body()) return increment;
+  const Aim stride{next.controls, next.surface, false};
+  return pulled(call, increment, stride, drag.reach * call.context.pull_distance());
+}
+
+void pull(EditCall& call, const Aim& aim, double distance) {
+  const Controls goal = pulled(call, call.accepted.controls, aim, distance);
   if (call.context.stored(goal) == call.accepted.controls) return;
   run_sub_edits_by_steps(call, {goal, aim.surface, true});
 }
@@ -116,11 +132,13 @@ void follow_goal(EditCall& call, const Aim& aim, DragProgress& drag) {
     const std::size_t accepted_before = call.report.path.size();
     const std::int64_t rounds_before = call.execution.counters.rounds;
     try {
-      const Controls increment = incremented(call, drag.followed.controls, next.controls);
+      const Controls increment = incremented_and_pulled(call, drag, next);
       if (call.context.stored(increment) != call.accepted.controls)
         run_sub_edits_by_steps(call, {increment, aim.surface, false});
+      drag.adapt_reach(call);
     } catch (const Interrupted&) {
       const bool has_accepted = call.report.path.size() > accepted_before;
+      drag.adapt_reach(call);
       if (has_accepted) drag.followed = std::move(next);  // else the next call begins with the rest of the stride
       const bool is_long = !has_accepted || call.is_late();
       drag.stride_took_too_long |= is_long && call.execution.counters.rounds > rounds_before;

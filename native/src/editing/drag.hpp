@@ -19,11 +19,20 @@ struct DragProgress {
   /// a step.
   double stride = std::numeric_limits<double>::infinity();
   bool stride_took_too_long = false;  ///< several calls, or too long to be shown; and had contacts
-  bool is_leaping = false;            ///< the time budget ended a leap, which the next call to the same goal resumes
-  double missing_at_detour = 0;       ///< way to the goal when the last detour failed; 0: none did
-  double missing_at_leap = 0;         ///< the same at the last leap, if it gained little; else 0
+  /// Part of a pull that a stride of a call that hands over includes. It adapts so that the call is not late.
+  double reach = 1;
+  bool is_leaping = false;       ///< the time budget ended a leap, which the next call to the same goal resumes
+  double missing_at_detour = 0;  ///< way to the goal when the last detour failed; 0: none did
+  double missing_at_leap = 0;    ///< the same at the last leap, if it gained little; else 0
   std::optional<Controls> leapt_from =
       std::nullopt;  ///< accepted controls from which a leap to this goal gains nothing
+
+  void adapt_reach(const EditCall& call) {
+    constexpr double least = 1.0 / 64;
+    if (!call.hand_over) return;
+    if (call.is_late()) reach = std::max(reach / 2, least);
+    if (!call.is_to_hand_over()) reach = std::min(2 * reach, 1.0);
+  }
 
   /// Halves the stride after one that went this way at most, but not below the shortest.
   void shorten_stride(double way, double shortest) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "editing/collision_queries.hpp"
@@ -31,6 +32,7 @@ struct RoundProgress {
   std::optional<Events> events = std::nullopt;  ///< of the step to the candidate, if a search has ended
   bool events_are_constrained = false;          ///< their rows are among `constraints`
   bool is_cut = false;                          ///< the step to the candidate was shortened to where there is a surface
+  bool begins_with_contacts = false;            ///< its first constraints are those of a ContactMemory
 
   bool belongs_to(const Controls& from, const Controls& to, Projection kind) const {
     return accepted == from && goal == to && projection == kind;
@@ -51,6 +53,35 @@ struct EditReport {
 /// both ways before a state can be shown.
 struct OvershootMemory {
   std::optional<Projection> better = std::nullopt;  ///< none: they do not overshoot
+};
+
+/// The constraints that held the last solution of a drag back. As its goal moves a little further, most of them hold
+/// the next solution back as well, which need not find them again, round by round. Where a contact has ended, its
+/// constraint would still act: so each solution begins without a part of them, and none is older than a few solutions.
+/// (mathematics.md, "Deep goals")
+class ContactMemory {
+ public:
+  /// Constraints to begin with. None if they are so few that a few rounds find them again, at less energy.
+  ConstraintSet take() {
+    ConstraintSet taken = std::exchange(constraints_, {});
+    if (taken.size() < least_count) return {};
+    taken.drop_part(parts, part_);
+    part_ = (part_ + 1) % parts;
+    return taken;
+  }
+
+  /// Keeps those that are active.
+  void keep(ConstraintSet constraints) {
+    constraints_ = std::move(constraints);
+    constraints_.drop_inactive();
+  }
+
+ private:
+  static constexpr std::size_t least_count = 48;
+  static constexpr Index parts = 4;
+
+  ConstraintSet constraints_;
+  Index part_ = 0;  ///< the next one to leave out
 };
 
 /// When a call ends at an acceptance, so that the state can be shown.
@@ -76,6 +107,7 @@ struct EditCall {
   Execution& execution;
   std::optional<HandOver> hand_over = std::nullopt;
   OvershootMemory* overshoot = nullptr;  ///< of a drag that is to hand over
+  ContactMemory* contacts = nullptr;     ///< the same
   const Metric* metric = nullptr;        ///< of the responses, instead of the context's
   const ControlBox* box = nullptr;       ///< that controls must not leave
 

@@ -35,11 +35,22 @@ void leave_out_obstacles(SparseField& field, Index first) {
   field.value.resize(count);
 }
 
+/// Whether rounds begin with the contacts of the last ones, and leave theirs to the next ones.
+bool shares_contacts(const EditCall& call, Projection projection) {
+  return call.contacts != nullptr && projection == Projection::from_goal;
+}
+
 /// The rounds to resume, or new ones.
 RoundProgress& progress_toward(EditCall& call, const Controls& goal, Projection projection) {
   std::optional<RoundProgress>& progress = call.progress;
-  if (!progress || !progress->belongs_to(call.accepted.controls, goal, projection))
-    progress = RoundProgress{call.accepted.controls, goal, projection, {}, goal, projection == Projection::from_goal};
+  if (progress && progress->belongs_to(call.accepted.controls, goal, projection)) return *progress;
+  progress = RoundProgress{call.accepted.controls, goal, projection, {}, goal, projection == Projection::from_goal};
+  if (!shares_contacts(call, projection)) return *progress;
+  progress->constraints = call.contacts->take();
+  if (progress->constraints.size() == 0) return *progress;
+  const ScopedTimer timer(call.execution.timings.response);
+  progress->begins_with_contacts = true;
+  progress->p = project_within_limits(call, progress->constraints, goal);
   return *progress;
 }
 
@@ -69,6 +80,8 @@ RoundLoop::RoundLoop(EditCall& call, const Controls& goal, Projection projection
 RoundOutcome RoundLoop::run() {
   for (; candidate() && search() && constrain(); ++progress_.round) project();
   outcome_.is_cut = progress_.is_cut;
+  if (outcome_.clear && progress_.accumulates && shares_contacts(call_, progress_.projection))
+    call_.contacts->keep(std::exchange(progress_.constraints, {}));
   return std::move(outcome_);
 }
 
@@ -174,7 +187,7 @@ std::optional<Events> RoundLoop::find_events() {
   std::optional<Positions> placed;
   if (prunes) {
     place_surface();
-    call_.queries.prune_cache(start, outcome_.candidate.surface, call_.execution);
+    prune_cache();
     progress_.cache_is_pruned = true;
     if (!reads_rows) placed = outcome_.candidate.surface;
   }
@@ -190,13 +203,21 @@ std::optional<Events> RoundLoop::find_events() {
   return call_.queries.find(start, outcome_.candidate.surface, outcome_.pair_limit, call_.execution);
 }
 
+/// Keeps the cached candidates of the step to the goal, even if the first candidate is closer: the next ones are not.
+void RoundLoop::prune_cache() {
+  std::optional<State> goal;
+  if (progress_.begins_with_contacts)
+    goal = feasible_state(call_.context, call_.context.stored(progress_.goal), call_.execution);
+  call_.queries.prune_cache(call_.accepted.surface, goal ? goal->surface : outcome_.candidate.surface, call_.execution);
+}
+
 /// Events at the beginning of the step of a large body, which then is the candidate. Nothing if there are none, or if
 /// the step is short or not the first.
 std::optional<Events> RoundLoop::find_near_events() {
   const EditContext& context = call_.context;
   const bool projects_goal = options_.solver == ConstraintSolver::lcp && options_.accumulated_rounds > 0 &&
                              progress_.projection == Projection::from_goal;
-  const bool is_first = progress_.round == 0 && first_ == FirstSearch::near_start;
+  const bool is_first = progress_.round == 0 && !progress_.begins_with_contacts && first_ == FirstSearch::near_start;
   if (!is_first || !projects_goal || !context.has_large_body()) return std::nullopt;
   const double length = context.longest_displacement(call_.accepted.surface, outcome_.candidate.surface);
   if (length < 2 * context.first_reach()) return std::nullopt;

@@ -47,6 +47,7 @@ class RoundLoop {
   auto at_feasible_candidate(const Evaluate& evaluate);
 
   std::optional<Events> find_events();
+  void prune_cache();
   std::optional<Events> find_near_events();
   std::vector<ControlConstraint> linearised(std::vector<Stiv> stivs) const;
   void place_surface();

@@ -64,6 +64,7 @@ class SurfaceSession final : public SessionImplementation {
     progress_.reset();
     tightening_.reset();
     overshoot_ = {};
+    contacts_ = {};
     queries_.clear_cache();
     trail_.begin(controls);
     const Controls aim = context_.limits().nearest(goal);
@@ -106,6 +107,7 @@ class SurfaceSession final : public SessionImplementation {
       if (hand_over) {
         call.hand_over.emplace(*hand_over);
         call.overshoot = &overshoot_;
+        if (responds_linearly()) call.contacts = &contacts_;
       }
       tightening_.reset();
       const PullLimits limits = pull_limits_of_drag(context_, drag_, aim, execution);
@@ -187,6 +189,7 @@ class SurfaceSession final : public SessionImplementation {
       session_.drag_.followed = std::move(followed_);
       if (lasts_) return;
       session_.overshoot_ = overshoot_;
+      session_.contacts_ = {};
       session_.progress_.reset();
       session_.tightening_.reset();
       session_.queries_.clear_cache();
@@ -205,6 +208,11 @@ class SurfaceSession final : public SessionImplementation {
     OvershootMemory overshoot_;
     bool lasts_ = false;
   };
+
+  /// Whether constraints of other controls keep their meaning: rotation vectors and scalars have another metric there.
+  bool responds_linearly() const {
+    return context_.deformation().rotation_rows().empty() && context_.deformation().scalar_rows().rows.empty();
+  }
 
   void forget_leaps() {
     drag_.is_leaping = false;
@@ -302,6 +310,7 @@ class SurfaceSession final : public SessionImplementation {
     if (context_.renew_metric()) {
       progress_.reset();
       tightening_.reset();
+      contacts_ = {};
     }
     EditReport report;
     State target{goal, {}};
@@ -355,6 +364,7 @@ class SurfaceSession final : public SessionImplementation {
   std::optional<TighteningProgress> tightening_;  ///< toward the goal of the last call
   Controls checked_;                              ///< last restored; a drag that is cancelled goes back to them
   OvershootMemory overshoot_;                     ///< of the drags
+  ContactMemory contacts_;                        ///< of the drags
   bool is_dragging_ = false;
   std::optional<LeastDistance> least_distance_;  ///< built at the first query
 };

@@ -99,7 +99,8 @@ RoundOutcome SubEditLoop::first_answer() {
   const auto has_overshot = [&](const State& state) { return overshoots(state); };
   RoundOutcome accumulated = rounds(Projection::from_goal, has_overshot);
   const bool overshot = accumulated.given_up || (accumulated.clear && overshoots(accumulated.candidate));
-  const bool has_responded = call_.progress->round > 0;  // else Algorithm 1 has the same solution
+  // Without a response, Algorithm 1 has the same solution.
+  const bool has_responded = call_.progress->round > 0 || call_.progress->begins_with_contacts;
   if (!overshot || !has_responded) return accumulated;
   return better_of(std::move(accumulated), rounds(Projection::from_last_round));
 }

@@ -75,17 +75,28 @@ void ConstraintSet::complete_gram(const Execution& execution) {
 }
 
 void ConstraintSet::drop_inactive() {
-  std::vector<Eigen::Index> active, in_gram;
-  for (Eigen::Index r = 0; r < multipliers_.size(); ++r) {
-    if (!(multipliers_[r] > 0)) continue;
-    active.push_back(r);
-    if (r < gram_.rows()) in_gram.push_back(r);
-  }
+  std::vector<Eigen::Index> active;
+  for (Eigen::Index r = 0; r < multipliers_.size(); ++r)
+    if (multipliers_[r] > 0) active.push_back(r);
+  keep(active);
+}
+
+void ConstraintSet::drop_part(Index period, Index first) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index r = 0; r < multipliers_.size(); ++r)
+    if (r % period != first) kept.push_back(r);
+  keep(kept);
+}
+
+/// Keeps these constraints of those that were projected, ascending, and removes all others.
+void ConstraintSet::keep(const std::vector<Eigen::Index>& numbers) {
+  const auto end = std::lower_bound(numbers.begin(), numbers.end(), gram_.rows());
+  const std::vector<Eigen::Index> in_gram(numbers.begin(), end);
   Eigen::MatrixXd gram = gram_(in_gram, in_gram);
-  Eigen::VectorXd multipliers = multipliers_(active);
-  for (std::size_t k = 0; k < active.size(); ++k)
-    if (static_cast<Eigen::Index>(k) != active[k]) constraints_[k] = std::move(constraints_[active[k]]);
-  constraints_.resize(active.size());
+  Eigen::VectorXd multipliers = multipliers_(numbers);
+  for (std::size_t k = 0; k < numbers.size(); ++k)
+    if (static_cast<Eigen::Index>(k) != numbers[k]) constraints_[k] = std::move(constraints_[numbers[k]]);
+  constraints_.resize(numbers.size());
   gram_ = std::move(gram);
   multipliers_ = std::move(multipliers);
 }

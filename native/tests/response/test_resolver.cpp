@@ -153,3 +153,29 @@ TEST_CASE("resolver: equations hold for all constraints, also for inactive ones"
   CHECK(met.row(1).norm() == 0);
   CHECK((resolve(stivs, p, Eigen::VectorXd::Ones(2)).row(0).transpose() - Vector3(1, 0, 0)).norm() < 1e-9);
 }
+
+TEST_CASE("resolver: a set without a part of its constraints projects as if it never had them") {
+  constexpr Index count = 9, period = 4, first = 1;
+  const Copy deformation(count);
+  const DiagonalMetric metric(Eigen::VectorXd::Ones(count));
+  const Controls p = Controls::Random(count, 3);
+  const Execution execution(1);
+  std::vector<Stiv> all, others;
+  for (Index k = 0; k < count; ++k) {
+    all.push_back(half_space(k, Vector3(1, static_cast<double>(k), -1).normalized(), -1 - static_cast<double>(k)));
+    all.back().gradient.index.push_back((k + 1) % count);  // neighbours are coupled
+    all.back().gradient.value.push_back(0.5 * Vector3::UnitY());
+    if (all.back().gradient.index[1] == 0) std::swap(all.back().gradient.index[0], all.back().gradient.index[1]);
+    if (k % period != first) others.push_back(all.back());
+  }
+  const auto constraints = [&](const std::vector<Stiv>& stivs) {
+    return control_constraints(stivs, deformation, p, metric, p);
+  };
+  ConstraintSet set, expected;
+  set.add(constraints(all));
+  set.project(p, execution);
+  set.drop_part(period, first);
+  expected.add(constraints(others));
+  CHECK(set.size() == expected.size());
+  CHECK(set.project(p, execution).isApprox(expected.project(p, execution), 1e-8));
+}

@@ -43,6 +43,9 @@ class ConstraintSet {
   /// Removes constraints that were inactive in the last projection.
   void drop_inactive();
 
+  /// Removes one constraint in `period`, the first one after `first` others.
+  void drop_part(Index period, Index first);
+
   /// The point closest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
   /// multipliers of the LCP. (mathematics.md, Eq. 6)
   Controls project(const Controls& from, const Execution& execution);
@@ -52,6 +55,7 @@ class ConstraintSet {
   Controls project_as_equations(const Controls& from, const Execution& execution);
 
  private:
+  void keep(const std::vector<Eigen::Index>& numbers);
   void complete_gram(const Execution& execution);
   Eigen::VectorXd excess_at(const Controls& p) const;
   Controls moved_by_multipliers(const Controls& from) const;
