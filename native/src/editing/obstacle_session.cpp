@@ -111,7 +111,10 @@ class ObstacleSession final : public SessionImplementation {
     bounds_ = moving_bounds(*surface_, surface());
   }
 
-  void end_drag() override { forget_others(); }
+  void end_drag() override {
+    forget_others();
+    near_->session->end_drag();
+  }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     for (const PositionsView* q : {&start, &end}) surface_->check_positions(*q);

@@ -86,6 +86,7 @@ class SurfaceSession final : public SessionImplementation {
     const auto work = [&](EditCall& call, const Aim& aim) {
       is_dragging_ = false;
       tightening_.reset();
+      contacts_ = {};
       drag_.missing_at_detour = drag_.missing_at_leap = 0;
       forget_leaps();
       const bool is_near = context_.longest_displacement(accepted_.surface, aim.surface) <= context_.pull_distance();
@@ -147,6 +148,8 @@ class SurfaceSession final : public SessionImplementation {
     };
     return carry_out(goal, execution, FollowedGoal::after_any_acceptance, work);
   }
+
+  void end_drag() override { contacts_ = {}; }
 
   bool is_step_free(const PositionsView& start, const PositionsView& end, Execution& execution) override {
     const FloatingPointScope floating_point;
