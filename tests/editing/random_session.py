@@ -22,6 +22,7 @@ SHIFTS = st.tuples(*[st.floats(-3, 3, width=32)] * 3)
 TURNS = st.tuples(*[st.floats(-3, 3, width=32)] * 3)
 SEPARATIONS = st.sampled_from([0.0, 1e-3, 0.02, 0.3])
 MODES = st.sampled_from(["vertices", "rigid", "scaling"])
+HAND_OVERS = st.sampled_from([None, 0.0])
 
 
 class RandomSession(RuleBasedStateMachine):
@@ -40,14 +41,14 @@ class RandomSession(RuleBasedStateMachine):
         self.mode = mode
         self.start()
 
-    @rule(shift=SHIFTS)
-    def drag(self, shift: tuple) -> None:
-        self.solve(lambda goal: self.session.drag(goal), shift, slice(None))
+    @rule(shift=SHIFTS, hand_over=HAND_OVERS)
+    def drag(self, shift: tuple, hand_over: float | None) -> None:
+        self.solve(lambda goal: self.session.drag(goal, hand_over=hand_over), shift, slice(None))
 
-    @rule(shift=SHIFTS, first=st.integers(0, 40))
+    @rule(shift=SHIFTS, first=st.integers(0, 40), hand_over=HAND_OVERS)
     @precondition(lambda self: self.mode == "vertices")
-    def drag_some_vertices(self, shift: tuple, first: int) -> None:
-        self.solve(lambda goal: self.session.drag(goal), shift, slice(first, first + 12))
+    def drag_some_vertices(self, shift: tuple, first: int, hand_over: float | None) -> None:
+        self.solve(lambda goal: self.session.drag(goal, hand_over=hand_over), shift, slice(first, first + 12))
 
     @rule(shift=SHIFTS)
     def edit_in_one_call(self, shift: tuple) -> None:

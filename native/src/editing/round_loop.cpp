@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "editing/contact_memory.hpp"
 #include "editing/control_interpolation.hpp"
 #include "editing/feasible_state.hpp"
 #include "editing/response_projection.hpp"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "editing/contact_memory.hpp"
 #include "editing/drag.hpp"
 #include "editing/drag_trail.hpp"
 #include "editing/edit_result.hpp"

@@ -35,13 +35,6 @@ def make_rigid_set(
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
     motion = PlacementMotion(controls[0], controls[0], axes)
     placed = PlacedStack(meshes, group.bent, controls, motion) if group.bent else None
-
-    def rotating(pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
-        if not group.bent:
-            return stiv.rigid(rest, pivot), None
-        stack = PlacedStack(meshes, group.bent, controls, replace(motion, pivot=pivot))
-        return stack.deformation, stack
-
     objects = [root.reference.find() for root in group.roots]
     free = None if scales else find_free_directions(objects, starts)
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
@@ -51,7 +44,8 @@ def make_rigid_set(
     if axes is not None:
         rule = ScaleGoal(**vars(rule), axes=axes)
     elif selected and kind == "rotate":
-        rule = RotationGoal(**vars(rule), about=PivotDeformation(rotating), free_axis=_turns_on_contact(settings))
+        about = _about_pivots(rest, meshes, group, motion)
+        rule = RotationGoal(**vars(rule), about=about, free_axis=_turns_on_contact(settings))
     weight = settings.response_weight(True) if selected else 1.0
     max_weights = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
     references = tuple(root.reference for root in group.roots)
@@ -62,6 +56,20 @@ def make_rigid_set(
         PlacementWriter(references, tuple(starts), motion),
         weight_axes=None if free is None else np.array([free.axes, np.eye(3)]), placed=placed,
     )  # fmt: skip
+
+
+def _about_pivots(
+    rest: Floats, meshes: Sequence[VisibleMesh], group: RigidGroup, motion: PlacementMotion
+) -> PivotDeformation:
+    """Rotations about pivots, of the surface `rest`, (n, 3), or of its bent meshes as Blender evaluates them."""
+
+    def make(pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
+        if not group.bent:
+            return stiv.rigid(rest, pivot), None
+        stack = PlacedStack(meshes, group.bent, stiv.rigid_rest_controls(rest), replace(motion, pivot=pivot))
+        return stack.deformation, stack
+
+    return PivotDeformation(make)
 
 
 def _turns_on_contact(settings: EditSettings) -> bool:
