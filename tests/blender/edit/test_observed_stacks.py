@@ -11,7 +11,7 @@ import stack_trials
 from building import add_cube, add_modifier, evaluated, meet, select, shift, snapshot, stretch, turn
 from evaluation_reading import kept
 from stack_trials import WAYS, kept_motion, open_piece, run_random_trial, run_trial
-from stacks import KINDS, STACKS, add_block, add_body, add_sheet, mirrored, skin, subdivided
+from stacks import KINDS, STACKS, add_block, add_body, add_sheet, along_normals, mirrored, skin, subdivided
 
 import stiv
 from stiv.blender import (
@@ -298,6 +298,29 @@ def test_the_way_out_of_turning_diagonals_is_one() -> None:
     edit = begin()
     edit.drag(shift(0, 0, 0.2))
     assert edit.write().passed
+
+
+def shifted_by_its_own_scale() -> Any:
+    ob = add_sheet()
+    tree = along_normals()
+    own, info = tree.nodes.new("GeometryNodeSelfObject"), tree.nodes.new("GeometryNodeObjectInfo")
+    place = next(node for node in tree.nodes if node.bl_idname == "GeometryNodeSetPosition")
+    tree.links.new(own.outputs[0], info.inputs["Object"])
+    tree.links.new(info.outputs["Scale"], place.inputs["Offset"])
+    add_modifier(ob, "NODES").node_group = tree
+    return ob
+
+
+def test_an_object_whose_shape_depends_on_its_scale_is_refused_with_a_way_out() -> None:
+    ob = shifted_by_its_own_scale()
+    select(ob)
+    before = snapshot()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "scale")
+    edit.drag(stretch((1.2, 1.2, 1.2)))
+    report = edit.write()
+    assert not report.passed and report.message == "Piece: its modifiers cannot be followed (0.24); apply them"
+    edit.restore()
+    assert snapshot() == before
 
 
 @pytest.mark.parametrize("way", ["deforming", "edit mode"])

@@ -252,6 +252,8 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
         whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
         difference = largest_difference(meshes[number], whole)
         if difference and _exceeds_tolerance(difference, accepted[control_set]):  # mostly 0 for obstacles
+            if len(mesh.owner.find().modifiers) > 0:
+                return f"{mesh.owner.name}: its modifiers cannot be followed ({difference:.3g}); apply them"
             return f"{mesh.owner.name}: Blender shows it {difference:.3g} away from the solved position"
     return ""
 
