@@ -42,7 +42,7 @@ Controls pulled(const EditCall& call, const Controls& from, const Aim& aim, doub
 /// sub-edit could pull. Toward the goal of the stride, since later strides add the rest. Without a large body: to
 /// search further costs it more.
 Controls incremented_and_pulled(const EditCall& call, const DragProgress& drag, const State& next) {
-  const Controls increment = incremented(call, drag.followed.controls, next.controls);
+  Controls increment = incremented(call, drag.followed.controls, next.controls);
   const bool moves = call.context.stored(increment) != call.accepted.controls;
   if (!moves || !call.hand_over || call.context.has_large_body()) return increment;
   const Aim stride{next.controls, next.surface, false};
