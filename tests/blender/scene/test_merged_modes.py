@@ -39,7 +39,7 @@ def test_equal_modes_are_one_mesh_until_object_mode_shows_another(monkeypatch: p
     edit.drag(shift(0, 0, -0.15))
     monkeypatch.setattr(merged_modes, "read_positions_of", lower)
     report = edit.write()
-    assert not report.passed and "Piece: Blender shows it 0.3 away" in report.message
+    assert not report.passed and "Piece: its modifiers cannot be followed (0.3)" in report.message
     monkeypatch.undo()
     edit.drag(shift(0, 0, -0.6))
     assert edit.write().passed
