@@ -205,8 +205,8 @@ class EditSession:
         next call with the same goal continues. Another goal starts again with the whole increment.
 
         ``hand_over``, in seconds: the call ends at the first state that it accepts after this time, with the status
-        "budget", so that the state can be shown while the next call continues from it. The increment then includes a
-        part of a pull, and begins with the contacts of the last call.
+        "budget", so that the state can be shown while the next call continues from it. The call then begins with the
+        contacts of the last one, and its increment includes a part of a pull.
         """
         values = self._session.drag(as_doubles(goal, "goal"), cancel, progress, time_budget, hand_over)
         return self._result(values)

@@ -74,7 +74,7 @@ def test_the_contacts_of_the_last_solve_spare_rounds() -> None:
 
 
 def test_contacts_that_have_ended_hold_nothing_back() -> None:
-    """The shirt is taken off the body again: it leaves by itself, and is exactly at its goal some calls later."""
+    """The shirt is widened past its first size: it leaves the body, and is exactly at its goal some calls later."""
     stage = shirt()
     session = stiv.EditSession(stage.surface, stage.deformation, stage.controls)
     for end in goals(stage):

@@ -73,7 +73,7 @@ class EditSession {
   /// (mathematics.md, "Deep goals")
   /// @param hand_over seconds; the call ends at the first state that it accepts later than that, with the status
   ///        budget: the state can be shown while the next call continues from it. So that this state is near its goal,
-  ///        the increment then includes a part of a pull, and begins with the contacts of the last call
+  ///        the call begins with the contacts of the last one, and its increment includes a part of a pull
   EditResult drag(const Controls& goal, Execution& execution, std::optional<double> hand_over = std::nullopt);
 
   /// Solves again from the accepted state toward the last goal until the energy no longer falls. It never grows.

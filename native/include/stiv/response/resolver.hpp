@@ -43,7 +43,7 @@ class ConstraintSet {
   /// Removes constraints that were inactive in the last projection.
   void drop_inactive();
 
-  /// Removes one constraint in `period`, the first one after `first` others.
+  /// Removes the constraint with the number `first`, and from there on each `period`-th one.
   void drop_part(Index period, Index first);
 
   /// The point closest to `from` in the metric that satisfies all constraints: from + sum lambda_r step_r with the
