@@ -122,6 +122,30 @@ def test_a_new_object_goes_to_the_nearest_free_place(kind: str) -> None:
     assert 1.0 < new.location.x < 2.5 and abs(new.location.y) < 0.2
 
 
+def test_a_new_text_of_another_size_is_no_copy_of_the_selected_one() -> None:
+    wall = add_wall()
+    bpy.ops.object.text_add(location=(2.9, 0, 0))
+    text = bpy.context.object
+    text.data.size = 0.05
+    outcome = guarded(lambda: bpy.ops.object.text_add(location=(2.5, 0, 0)))
+    assert outcome.placed == ["Text.001"] and outcome.reason == "Text.001 was added or shown" and pairs() == set()
+    assert text.location.x == np.float32(2.9) and wall.location.x == WALL + 0.5
+
+
+def test_a_copy_that_intersects_at_the_place_of_its_original_goes_to_a_free_place() -> None:
+    """The original does not intersect the wall there, since a modifier shrinks it."""
+    add_wall()
+    box = add_cube("Box", (2.2, 0, 0))
+    box.modifiers.new("Shrink", "DISPLACE").strength = -2
+    bpy.context.view_layer.update()
+
+    def copy() -> None:
+        duplicate(box, location=(2.5, 0, 0)).modifiers.clear()
+
+    outcome = guarded(copy)
+    assert outcome.placed == ["Box.001"] and outcome.pairs == () and pairs() == set()
+
+
 def test_objects_that_were_only_shown_stay_and_are_named() -> None:
     add_wall()
     box = add_cube("Box", (WALL, 0, 0))
@@ -227,15 +251,20 @@ def test_a_slow_machine_finds_a_free_place_too(monkeypatch: pytest.MonkeyPatch) 
 def test_objects_added_together_stay_together() -> None:
     add_wall()
     box = add_cube("Box", (-9, 0, 0))
+    turned, mirrored = (0, 0, 2 * np.pi), (1, -1, 1)
 
     def append() -> None:
         first = add_cube("First", (2.5, 0, 0))
         add_cube("Child", (0, 0, 2.5), parent=first)
-        add_cube("Second", (2.5, 3, 0))
+        second = add_cube("Second", (2.5, 3, 0), scale=mirrored)
+        second.rotation_euler = turned
+        bpy.context.collection.objects.link(bpy.data.objects.new("Apart", None))
 
     outcome = guarded(append)
     places = np.array([bpy.data.objects[name].matrix_world.translation for name in ("First", "Child", "Second")])
-    assert outcome.placed == ["Child", "First", "Second"] and pairs() == set() and box.location.x == -9
+    assert outcome.placed == ["Apart", "Child", "First", "Second"] and pairs() == set() and box.location.x == -9
+    second = bpy.data.objects["Second"]
+    assert tuple(second.rotation_euler) == pytest.approx(turned) and tuple(second.scale) == mirrored
     assert places - places[0] == pytest.approx(np.array([[0, 0, 0], [0, 0, 2.5], [0, 3, 0]]), abs=1e-5)
     assert places[0] == pytest.approx([2, 0, 0], abs=0.02)
 

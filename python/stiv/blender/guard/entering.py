@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
-from mathutils import Matrix, Vector
 
+from stiv.blender.controls.object_transform import read_transform, write_transform
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
@@ -49,11 +49,13 @@ def find_originals(accepted: AcceptedScene, present: SceneState, new: Collection
 
 
 def _is_copy(state: ObjectState, other: ObjectState) -> bool:
-    """Do the objects have the same name up to its number, the same kind of data, and the same vertices?"""
+    """Do the objects have the same name up to its number, the same kind of data, and the same vertices or size?"""
     first, second = state.reference.find(), bpy.data.objects.get(other.reference.name)
     if second is None or first.type != second.type or _base_name(first.name) != _base_name(second.name):
         return False
-    return state.kind == other.kind and state.has_same_points(other)
+    if state.kind != other.kind or not state.has_same_points(other):
+        return False
+    return state.points is not None or np.array_equal(first.bound_box, second.bound_box)
 
 
 def _base_name(name: str) -> str:
@@ -194,8 +196,10 @@ def place_freely(
     before = [read_object(ob) for ob in roots]
     if any(ob.library is not None for ob in roots):
         return False
+    motion = np.eye(4)
+    motion[:3, 3] = translation
     for ob in roots:
-        ob.matrix_world = Matrix.Translation(Vector(translation)) @ ob.matrix_world
+        write_transform(ob, read_transform(ob), motion, np.ones(3))
     context.view_layer.update()
     if touches_others(known.fresh(find_intersections(context, settings)), names):
         for state in before:

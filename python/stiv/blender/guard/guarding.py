@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import bpy
 import numpy as np
 
-from stiv import InputError
+from stiv import InputError, StartIntersectsError
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
@@ -276,10 +276,11 @@ def _guard_new_objects(
     }
     blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
     if originals and touches_others(blocking, created):
-        result.add((yield from correct_copies(context, settings, accepted, originals)))
+        with suppress(StartIntersectsError):  # what the copy passes there, its original does not
+            result.add((yield from correct_copies(context, settings, accepted, originals)))
         yield None
         if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
             return
     if (yield from place_freely(context, settings, accepted.known, created)):
         result.wrote = True
-        result.placed += [present[number].reference.name for number in entering]
+        result.placed += sorted(created)
