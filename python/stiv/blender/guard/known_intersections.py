@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import bpy
 
@@ -54,7 +55,7 @@ class KnownIntersections:
 
     pairs: tuple[FacePair, ...] = ()
 
-    @property
+    @cached_property
     def objects(self) -> frozenset[ObjectPair]:
         """The pairs of objects."""
         return frozenset(map(object_pair, self.pairs))

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """All visible meshes as one surface, with lookup from its triangles to objects and faces."""
 
+from bisect import bisect_right
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
@@ -61,12 +64,12 @@ class Assembly:
         number = triangle - len(self.surface.triangles)
         if number >= 0:
             return self._element_beside(number)
-        mesh, number = self._locate(triangle, [len(each.triangles) for each in self.meshes])
+        mesh, number = self._locate(triangle, self._triangle_ends)
         return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
     def loose_edge(self, edge: int) -> Element:
         """The edge of a loose edge of the surface."""
-        mesh, number = self._locate(edge, [len(each.loose_edges) for each in self.meshes])
+        mesh, number = self._locate(edge, self._loose_edge_ends)
         return Element(mesh.owner.name, _kind(mesh, "edge"), int(mesh.loose_numbers[number]), mesh.read_from)
 
     def vertex(self, vertex: int) -> Element:
@@ -86,10 +89,17 @@ class Assembly:
             number -= static.obstacle.triangle_count
         raise IndexError("no obstacle has this triangle")
 
-    def _locate(self, index: int, sizes: Sequence[int]) -> tuple[VisibleMesh, int]:
-        ends = np.cumsum(sizes)
-        mesh = int(np.searchsorted(ends, index, side="right"))
-        return self.meshes[mesh], int(index - (ends[mesh] - sizes[mesh]))
+    @cached_property
+    def _triangle_ends(self) -> list[int]:
+        return list(accumulate(len(each.triangles) for each in self.meshes))
+
+    @cached_property
+    def _loose_edge_ends(self) -> list[int]:
+        return list(accumulate(len(each.loose_edges) for each in self.meshes))
+
+    def _locate(self, index: int, ends: Sequence[int]) -> tuple[VisibleMesh, int]:
+        mesh = bisect_right(ends, index)
+        return self.meshes[mesh], index - (ends[mesh - 1] if mesh else 0)
 
 
 def _kind(mesh: VisibleMesh, kind: str) -> str:
