@@ -56,11 +56,7 @@ def _object_settings(scene: bpy.types.Scene) -> dict[str, Any]:
             for name, each in chosen.items()
             if each.weight_group
         },
-        "ignored_pairs": tuple(
-            (row.first.name, row.second.name)
-            for row in scene.stiv.passing_pairs
-            if all(each is not None and each.name in chosen for each in (row.first, row.second))
-        ),
+        "ignored_pairs": passing_pairs(scene),
         "pair_separations": tuple(
             (row.first.name, row.second.name, row.separation)
             for row in scene.stiv.pair_separations
@@ -72,6 +68,17 @@ def _object_settings(scene: bpy.types.Scene) -> dict[str, Any]:
             if (refined := refined_object(obj)) is not None and refined.name in scene.objects
         },
     }
+
+
+def passing_pairs(scene: bpy.types.Scene) -> tuple[tuple[str, str], ...]:
+    """Names of the objects of each pair that nothing tests against each other."""
+    rows = scene.stiv.passing_pairs
+    names = set(scene.objects.keys()) if rows else set()
+    return tuple(
+        (row.first.name, row.second.name)
+        for row in rows
+        if all(each is not None and each.name in names for each in (row.first, row.second))
+    )
 
 
 def _handle_groups(chosen: bpy.types.PropertyGroup) -> tuple[str, ...]:

@@ -64,7 +64,7 @@ def excluded_count(stored: str) -> str:
 
 
 def _excluded(excluded: stiv_blender.Exclusions) -> str:
-    faces = {face for pair in excluded.pairs for face in pair}
+    faces = set().union(*excluded.faces.values())
     return translate("{} excluded").format(counted_faces(len(faces), translate))
 
 

@@ -9,7 +9,7 @@ from bpy.props import IntProperty
 from ... import stiv_blender
 from ...guard import watcher
 from ...native_module import NeedsNativeModule
-from ...scene.edit_settings import edit_settings
+from ...scene.edit_settings import edit_settings, passing_pairs
 from ...translations import translate
 from ..reports import report_error
 
@@ -66,7 +66,7 @@ class STIV_OT_let_pass_remove(NeedsNativeModule, bpy.types.Operator):
 
 def passing_text(scene: bpy.types.Scene) -> str:
     """The pairs of objects that nothing tests against each other, as a line; "" without any."""
-    pairs = edit_settings(scene).ignored_pairs
+    pairs = passing_pairs(scene)
     if not pairs:
         return ""
     listed = ", ".join(" / ".join(pair) for pair in pairs[:LISTED]) + (", …" if len(pairs) > LISTED else "")

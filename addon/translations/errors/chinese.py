@@ -146,6 +146,8 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} 自相交，{} 个面，保持原样",
     "{} is connected to its parent; rotate it": "{} 与父级相连；请改为旋转",
     "{} is gone": "{} 已不存在",
+    "{} more objects intersect themselves, left as they are": "另有 {} 个物体自相交，保持原样",
+    "{} more pairs of objects cut each other, may only part": "另有 {} 对物体相交，只能分开",
     "{} on its seams": "接缝上{}",
     "{} shows {}; apply it": "{}会显示{}；请应用它",
     "{} triangles have no area": "{} 个三角形没有面积",

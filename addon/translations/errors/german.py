@@ -146,6 +146,8 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} schneidet sich selbst, {} Flächen, bleibt so",
     "{} is connected to its parent; rotate it": "{} ist mit dem Elternknochen verbunden; stattdessen drehen",
     "{} is gone": "{} ist nicht mehr da",
+    "{} more objects intersect themselves, left as they are": "{} weitere Objekte schneiden sich selbst, bleiben so",
+    "{} more pairs of objects cut each other, may only part": "{} weitere Objektpaare schneiden sich, dürfen sich nur trennen",
     "{} on its seams": "{} an den Nähten",
     "{} shows {}; apply it": "{} zeigt {}; anwenden",
     "{} triangles have no area": "{} Dreiecke haben keine Fläche",

@@ -146,6 +146,8 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} は自己交差しています (面 {})。そのままにします",
     "{} is connected to its parent; rotate it": "{} は親に接続されています。回転してください",
     "{} is gone": "{} がなくなりました",
+    "{} more objects intersect themselves, left as they are": "ほか {} 個のオブジェクトが自己交差しています。そのままにします",
+    "{} more pairs of objects cut each other, may only part": "ほか {} 組のオブジェクトが交差。離れることだけできます",
     "{} on its seams": "シーム上で {}",
     "{} shows {}; apply it": "{}では{}が有効です。適用してください",
     "{} triangles have no area": "面積のない三角形が {} 個あります",

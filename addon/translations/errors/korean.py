@@ -146,6 +146,8 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{}이(가) 자체 교차함, 면 {}개, 그대로 둠",
     "{} is connected to its parent; rotate it": "{} 은(는) 부모에 연결됨; 대신 회전하기",
     "{} is gone": "{}이(가) 사라짐",
+    "{} more objects intersect themselves, left as they are": "외 오브젝트 {}개가 자체 교차함, 그대로 둠",
+    "{} more pairs of objects cut each other, may only part": "외 오브젝트 {}쌍이 교차함, 떨어질 수만 있음",
     "{} on its seams": "이음매에서 {}",
     "{} shows {}; apply it": "{}에서 {}이(가) 보임; 적용하세요",
     "{} triangles have no area": "넓이가 없는 삼각형 {}개",

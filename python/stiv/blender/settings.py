@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal
 
 from stiv import InputError
@@ -111,12 +111,22 @@ class Exclusions:
     shapes: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
+    def faces(self) -> Mapping[tuple[str, str], set[FaceKey]]:
+        """The excluded faces of each two objects, or parts of an object, whose names are in ascending order."""
+        owners = {name: name.partition("\n")[0] for pair in self.pairs for name, _ in pair}
+        faces: dict[tuple[str, str], set[FaceKey]] = {}
+        for first, second in self.pairs:
+            a, b = owners[first[0]], owners[second[0]]
+            faces.setdefault((a, b) if a <= b else (b, a), set()).update((first, second))
+        return faces
+
+    @cached_property
     def objects(self) -> frozenset[tuple[str, str]]:
         """Pairs of different objects with excluded faces, in ascending order."""
-        names = (tuple(sorted(name.partition("\n")[0] for name, _ in pair)) for pair in self.pairs)
-        return frozenset((first, second) for first, second in names if first != second)
+        return frozenset(names for names in self.faces if names[0] != names[1])
 
     @staticmethod
+    @lru_cache(maxsize=2)
     def from_json(text: str) -> Exclusions:
         """Read the text of `to_json`; "" gives no pairs. Raises InputError for any other text."""
         if not text:

@@ -10,7 +10,7 @@ from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, Exclusions, check_scene
-from stiv.blender.scene.exclusions import drop_stale
+from stiv.blender.scene.exclusions import drop_stale, intersection_notes
 from stiv.blender.verify.scene_check import find_exclusions
 
 DEFORM = EditSettings(object_response="deform")
@@ -137,3 +137,16 @@ def test_a_value_that_only_goes_deeper_costs_little_however_far_it_is() -> None:
         tries.append(result.counters["acceptance_tries"])
         edit.restore()
     assert 0 < tries[1] <= 10 * tries[0]  # the far way adds two goals and eight detours that gain nothing
+
+
+def test_notes_name_a_few_objects_the_moving_ones_first_and_count_the_others() -> None:
+    names = "ABCDEF"
+    alone = [((name, 0), (name, 1)) for name in names]
+    cut = [((first, 2), (second, 2)) for first, second in zip(names[:4], names[1:], strict=False)]
+    notes = intersection_notes(Exclusions(frozenset(alone + cut)), {"D"})
+    assert notes == (
+        "C cuts D, 2 faces, may only part", "D cuts E, 2 faces, may only part", "A cuts B, 2 faces, may only part",
+        "B cuts C, 2 faces, may only part", "D intersects itself, 2 faces, left as it is",
+        "A intersects itself, 2 faces, left as it is", "B intersects itself, 2 faces, left as it is",
+        "3 more objects intersect themselves, left as they are",
+    )  # fmt: skip

@@ -132,7 +132,8 @@ class BlenderEdit:
         """Notes about stale exclusions, intersections at the start that stay, seams, and users of a shared mesh."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
         notes = tuple(each.note for each in self.control_sets if each.note)
-        return (*dropped, *intersection_notes(self._solver.intersecting), *notes)
+        moving = {name for each in self.control_sets for name in each.names}
+        return (*dropped, *intersection_notes(self._solver.intersecting, moving), *notes)
 
     @property
     def fold_note(self) -> str:

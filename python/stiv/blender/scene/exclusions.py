@@ -18,6 +18,7 @@ from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.settings import Exclusions, FaceKey
 
 _MOST_CHARACTERS = 80  # of a message in Blender
+_MOST_NOTES = 3  # of one kind that name objects
 
 
 def exclude(pairs: Sequence[FacePair], meshes: Sequence[VisibleMesh]) -> Exclusions:
@@ -59,13 +60,27 @@ def intersection_text(first: str, second: str, count: int, ending: str = "") -> 
     return f"{_shortened(first, most)} cuts {_shortened(second, most)}{text}"
 
 
-def intersection_notes(excluded: Exclusions) -> tuple[str, ...]:
-    """A note for each object that intersects itself, and for each pair of excluded objects."""
+def intersection_notes(excluded: Exclusions, moving: Collection[str]) -> tuple[str, ...]:
+    """Notes about objects that intersect themselves, and about pairs of objects: the first few, and how many more.
+
+    moving: names of the objects that come first.
+    """
     faces: dict[tuple[str, str], set[FaceKey]] = {}
-    for pair in excluded.pairs:
-        first, second = sorted(name.partition("\n")[0].partition(PART)[0] for name, _ in pair)
-        faces.setdefault((first, second), set()).update(pair)
-    return tuple(_intersection_note(*names, len(keys)) for names, keys in sorted(faces.items()))
+    for sides, keys in excluded.faces.items():
+        first, second = sorted(name.partition(PART)[0] for name in sides)
+        faces.setdefault((first, second), set()).update(keys)
+    rows = sorted(faces.items(), key=lambda row: (not any(name in moving for name in row[0]), row[0]))
+    alone = [_intersection_note(*names, len(keys)) for names, keys in rows if names[0] == names[1]]
+    pairs = [_intersection_note(*names, len(keys)) for names, keys in rows if names[0] != names[1]]
+    return (
+        *_first_of(pairs, "{} more pairs of objects cut each other, may only part"),
+        *_first_of(alone, "{} more objects intersect themselves, left as they are"),
+    )
+
+
+def _first_of(notes: list[str], rest: str) -> list[str]:
+    others = len(notes) - _MOST_NOTES
+    return notes if others <= 1 else [*notes[:_MOST_NOTES], rest.format(others)]
 
 
 def _intersection_note(first: str, second: str, count: int) -> str:

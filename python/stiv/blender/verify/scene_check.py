@@ -139,8 +139,9 @@ def find_pairs_and_seams(
     pairs = find_face_pairs(assembly, assembly.positions, threads, intersecting_triangles[~contacts])
     intersecting = {(pair.first.object, *sorted((pair.first.number, pair.second.number))) for pair in pairs}
     seams = []
+    own, none = _own_triangles(assembly, intersecting_triangles[contacts]), np.empty((0, 2), np.int32)
     for number, (mesh, joins) in enumerate(zip(assembly.meshes, assembly.seams, strict=True)):
-        touching = mesh.faces[_own_triangles(assembly, number, intersecting_triangles[contacts])]
+        touching = mesh.faces[own.get(number, (none, none))[1]]
         touching = np.sort(touching[touching[:, 0] != touching[:, 1]], axis=1)
         faces = np.concatenate([seam_pairs(joins, mesh.triangles, mesh.faces), touching])
         if len(touching):
@@ -155,25 +156,22 @@ def find_pairs_and_seams(
 def _edge_contacts(assembly: Assembly, intersecting_triangles: Indices) -> NDArray[np.bool_]:
     """Flags the pairs of triangles, (k,), of one mesh that touch only in edges, in the mesh's own coordinates."""
     contacts = np.zeros(len(intersecting_triangles), np.bool_)
-    for number, mesh in enumerate(assembly.meshes):
-        inside = _is_inside(assembly, number, intersecting_triangles)
-        if inside.any():
-            own = _own_triangles(assembly, number, intersecting_triangles[inside])
-            contacts[inside] = edge_contacts(mesh.local, mesh.triangles, own)
+    for number, (rows, own) in _own_triangles(assembly, intersecting_triangles).items():
+        mesh = assembly.meshes[number]
+        contacts[rows] = edge_contacts(mesh.local, mesh.triangles, own)
     return contacts
 
 
-def _is_inside(assembly: Assembly, mesh: int, pairs: Indices) -> NDArray[np.bool_]:
-    first = sum(len(each.triangles) for each in assembly.meshes[:mesh])
-    end = first + len(assembly.meshes[mesh].triangles)
-    return np.asarray(((pairs >= first) & (pairs < end)).all(axis=1), np.bool_)
-
-
-def _own_triangles(assembly: Assembly, mesh: int, pairs: Indices) -> Indices:
-    """The pairs of triangles within one mesh, with triangle numbers of the mesh."""
-    first = sum(len(each.triangles) for each in assembly.meshes[:mesh])
-    own: Indices = pairs[_is_inside(assembly, mesh, pairs)] - np.int32(first)
-    return own
+def _own_triangles(assembly: Assembly, pairs: Indices) -> dict[int, tuple[Indices, Indices]]:
+    """For each mesh with pairs inside it: their rows, and the pairs with triangle numbers of the mesh."""
+    counts = [len(each.triangles) for each in assembly.meshes]
+    mesh = np.repeat(np.arange(len(counts)), counts)[pairs]
+    rows = np.flatnonzero(mesh[:, 0] == mesh[:, 1]).astype(np.int32)
+    rows = rows[np.argsort(mesh[rows, 0], kind="stable")]
+    numbers, firsts = np.unique(mesh[rows, 0], return_index=True)
+    starts = np.cumsum([0, *counts]).astype(np.int32)
+    groups = zip(numbers.tolist(), np.split(rows, firsts[1:]), strict=False)
+    return {number: (group, pairs[group] - starts[number]) for number, group in groups}
 
 
 def nearest_pair(context: bpy.types.Context, settings: EditSettings | None = None) -> stiv.LeastDistance | None:
