@@ -1,20 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """T-junctions: triangles that touch only along edges, where a vertex of one lies on an edge of the other.
 
-Uses rational arithmetic, because only exact coincidence counts. Filled text has such edges.
+Uses integers of any size, because only exact coincidence counts: a point is (x, y, z, w) with positive w, in lowest
+terms, at (x, y, z) / w in units of the last binary place of a pair of triangles. Filled text has such edges.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiv.arrays import Floats, Indices
 
-Point = tuple[Fraction, Fraction, Fraction]
+Point = tuple[int, int, int, int]
+Vector = tuple[int, int, int]
 NEAR = 1e-5  # in sizes of a pair: a vertex further from an edge is not on it
 DEEP = 1e-3  # barycentric coordinates above this are inside a triangle despite rounding
 INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
@@ -32,8 +34,8 @@ def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: In
     found = _vertex_near_edge(corners)
     found[found] = ~_overlap_clearly(corners[found])
     for row in np.flatnonzero(found):
-        first, second = ([_rational(point) for point in triangle] for triangle in corners[row])
-        found[row] = _touch_in_edges(first, second)
+        points = _exact_points(corners[row].reshape(6, 3))
+        found[row] = _touch_in_edges(points[:3], points[3:])
     return found
 
 
@@ -96,16 +98,14 @@ def _common(first: Sequence[Point], second: Sequence[Point]) -> list[Point]:
     return polygon
 
 
-def _clipped(polygon: Sequence[Point], normal: Point, origin: Point) -> list[Point]:
+def _clipped(polygon: Sequence[Point], normal: Vector, origin: Point) -> list[Point]:
     """Clip a convex polygon to the positive side of a plane. [Sutherland and Hodgman 1974]"""
-    heights = [_dot(normal, _minus(point, origin)) for point in polygon]
+    heights = [_dot(normal, _minus(point, origin)) for point in polygon]  # each in units of 1 / w
     left: list[Point] = []
     for k, (point, height) in enumerate(zip(polygon, heights, strict=True)):
         before, other = heights[k - 1], polygon[k - 1]
         if height * before < 0:
-            fraction = before / (before - height)
-            x, y, z = (u + fraction * (v - u) for u, v in zip(other, point, strict=True))
-            left.append((x, y, z))
+            left.append(_in_lowest_terms([u * height - v * before for u, v in zip(other, point, strict=True)]))
         if height >= 0:
             left.append(point)
     return left
@@ -125,18 +125,28 @@ def _on_edge(points: Sequence[Point], triangle: Sequence[Point]) -> bool:
     )
 
 
-def _rational(point: Floats) -> Point:
-    x, y, z = (Fraction(float(value)) for value in point)
-    return x, y, z
+def _exact_points(points: Floats) -> list[Point]:
+    """Points, (k, 3), in units of their last binary place."""
+    ratios = [value.as_integer_ratio() for value in points.ravel().tolist()]
+    unit = max(denominator for _, denominator in ratios)  # powers of two
+    values = iter([numerator * (unit // denominator) for numerator, denominator in ratios])
+    return [(x, y, z, 1) for x, y, z in zip(values, values, values, strict=True)]
 
 
-def _minus(a: Point, b: Point) -> Point:
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+def _in_lowest_terms(point: Sequence[int]) -> Point:
+    divisor = math.gcd(*point) if point[3] > 0 else -math.gcd(*point)
+    x, y, z, w = (value // divisor for value in point)
+    return x, y, z, w
 
 
-def _cross(a: Point, b: Point) -> Point:
+def _minus(a: Point, b: Point) -> Vector:
+    """A positive multiple of the difference."""
+    return a[0] * b[3] - b[0] * a[3], a[1] * b[3] - b[1] * a[3], a[2] * b[3] - b[2] * a[3]
+
+
+def _cross(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def _dot(a: Point, b: Point) -> Fraction:
+def _dot(a: Vector, b: Vector) -> int:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

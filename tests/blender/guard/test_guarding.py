@@ -122,7 +122,7 @@ def test_a_new_object_goes_to_the_nearest_free_place(kind: str) -> None:
     assert 1.0 < new.location.x < 2.5 and abs(new.location.y) < 0.2
 
 
-def test_a_new_text_of_another_size_is_no_copy_of_the_selected_one() -> None:
+def test_a_new_text_of_another_size_is_not_taken_for_a_copy() -> None:
     wall = add_wall()
     bpy.ops.object.text_add(location=(2.9, 0, 0))
     text = bpy.context.object

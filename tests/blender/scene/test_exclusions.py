@@ -2,6 +2,7 @@
 """Scenes that intersect and are edited all the same: excluded pairs stay, all others are guarded."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import bpy
 import numpy as np
@@ -142,7 +143,7 @@ def test_a_value_that_only_goes_deeper_costs_little_however_far_it_is() -> None:
 def test_notes_name_a_few_objects_the_moving_ones_first_and_count_the_others() -> None:
     names = "ABCDEF"
     alone = [((name, 0), (name, 1)) for name in names]
-    cut = [((first, 2), (second, 2)) for first, second in zip(names[:4], names[1:], strict=False)]
+    cut = [((first, 2), (second, 2)) for first, second in pairwise(names[:5])]
     notes = intersection_notes(Exclusions(frozenset(alone + cut)), {"D"})
     assert notes == (
         "C cuts D, 2 faces, may only part", "D cuts E, 2 faces, may only part", "A cuts B, 2 faces, may only part",
