@@ -48,8 +48,8 @@ class ClipSolver:
 
     def intersections(self, surface: Floats) -> list[tuple[str, str]]:
         """Names of the objects of intersecting pairs."""
-        pairs = self._static.find(surface).tolist()
-        return sorted({(self.assembly.face(a).object, self.assembly.face(b).object) for a, b in pairs})
+        pairs = self._static.find(surface)
+        return sorted({(a.object, b.object) for a, b in self.assembly.face_pairs(pairs)})
 
     def follow(
         self, start: Reached, goals: Sequence[tuple[float, Floats]], separation: float = 0.0

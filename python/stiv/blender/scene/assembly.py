@@ -67,6 +67,12 @@ class Assembly:
         mesh, number = self._locate(triangle, self._triangle_ends)
         return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
+    def face_pairs(self, pairs: Indices) -> list[tuple[Element, Element]]:
+        """The faces of pairs of triangles, (k, 2), of the surface or an obstacle."""
+        triangles, places = np.unique(pairs, return_inverse=True)
+        faces = [self.face(triangle) for triangle in triangles.tolist()]
+        return [(faces[a], faces[b]) for a, b in places.reshape(-1, 2).tolist()]
+
     def loose_edge(self, edge: int) -> Element:
         """The edge of a loose edge of the surface."""
         mesh, number = self._locate(edge, self._loose_edge_ends)

@@ -35,9 +35,8 @@ def exclude_undecided(
 
     These are pairs within one object, and pairs of objects that move `together`.
     """
-    pairs = ((assembly.face(a), assembly.face(b)) for a, b in found.tolist())
     chosen = frozenset(
-        _key(a, b) for a, b in pairs if a.object == b.object or (a.object in together and b.object in together)
+        _key(a, b) for a, b in assembly.face_pairs(found) if a.object == b.object or (a.object in together and b.object in together)
     )
     return Exclusions(excluded.pairs | chosen, excluded.shapes)
 
@@ -45,8 +44,7 @@ def exclude_undecided(
 def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:
     """Pairs of different objects in pairs of triangles, (k, 2), with the number of their faces."""
     faces: dict[tuple[str, str], set[Element]] = {}
-    for a, b in found.tolist():
-        elements = (assembly.face(a), assembly.face(b))
+    for elements in assembly.face_pairs(found):
         first, second = sorted(each.object for each in elements)
         if first != second:
             faces.setdefault((first, second), set()).update(elements)
@@ -114,8 +112,7 @@ def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats,
     if len(excluded.pairs) == 0:
         return np.empty((0, 2), np.int32)
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
-    faces = [(assembly.face(a), assembly.face(b)) for a, b in found.tolist()]
-    rows = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in faces]
+    rows = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in assembly.face_pairs(found)]
     chosen: Indices = found[np.array(rows, bool)]
     return chosen
 
@@ -139,7 +136,7 @@ def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threa
     """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    return all(_is_excluded(excluded, near.assembly.face(a), near.assembly.face(b)) for a, b in found.tolist())
+    return all(_is_excluded(excluded, a, b) for a, b in near.assembly.face_pairs(found))
 
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:

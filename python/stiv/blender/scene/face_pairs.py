@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from functools import cache
 
 import numpy as np
 
@@ -25,12 +24,11 @@ def find_face_pairs(
     none = np.empty((0, 2), np.int32)
     loose = _has_loose_elements(assembly.surface)
     edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads) if loose else (none, none)
-    face, edge, vertex = cache(assembly.face), cache(assembly.loose_edge), cache(assembly.vertex)
     counts = Counter(
         [
-            *((face(a), face(b)) for a, b in faces.tolist()),
-            *((edge(a), face(b)) for a, b in edges.tolist()),
-            *((vertex(a), face(b)) for a, b in vertices.tolist()),
+            *assembly.face_pairs(faces),
+            *((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
+            *((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
         ]
     )
     for first, second in [pair for pair in counts if pair[0] != pair[1] and pair[::-1] in counts]:
