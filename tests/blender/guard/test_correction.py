@@ -9,7 +9,7 @@ import bpy
 import pytest
 from building import add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, select, snapshot
 
-from stiv.blender import EditSettings, check_scene, compare, correct_after_tool, read_state
+from stiv.blender import BlenderEdit, EditSettings, check_scene, compare, correct_after_tool, read_state
 
 WALL = 3.0  # where its face is, along x
 
@@ -197,6 +197,27 @@ def test_a_parent_and_its_child_are_both_corrected() -> None:
     assert corrected(change).corrected
     assert parent.location.x == pytest.approx(0.5, abs=1e-5)
     assert evaluated(child)[:, 0].max() == pytest.approx(WALL, abs=0.05)
+
+
+def test_a_shared_mesh_is_edited_once_for_a_parent_and_its_child(monkeypatch: pytest.MonkeyPatch) -> None:
+    add_wall()
+    box = add_cube("Box")
+    child = bpy.data.objects.new("Child", box.data)
+    child.parent, child.location = box, (-5, 0, 0)
+    bpy.context.collection.objects.link(child)
+    bpy.context.view_layer.update()
+    started = []
+    begin = BlenderEdit.begin_with_steps
+    monkeypatch.setattr(BlenderEdit, "begin_with_steps", lambda *given: started.append(given) or begin(*given))
+
+    def pull() -> None:
+        for vertex in box.data.vertices:
+            vertex.co.x += 4 * (vertex.co.x > 0)
+        box.data.update()
+
+    outcome = corrected(pull)
+    assert outcome.names == ("Box", "Child") and len(started) == 1
+    assert evaluated(box)[:, 0].max() == pytest.approx(WALL, abs=0.02)
 
 
 def test_objects_with_a_role_yield() -> None:

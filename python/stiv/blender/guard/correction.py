@@ -171,16 +171,22 @@ def _passes(
         present = read_state(context)
         remaining = [
             change for change in compare(present, wanted).changes
-            if change.reference.name in names and (change.reference.session_uid, _kind(change, done)) not in done
+            if change.reference.name in names and _operation(change, done) not in done
         ]  # fmt: skip
         now = _outermost(remaining, wanted)
         if not now:
             return outcomes
         kind = "scale" if all(_kind(change, done) == "scale" for change in now if change.placed) else "rotate"
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
-        done |= {(change.reference.session_uid, _kind(change, done)) for change in now}
+        done |= {_operation(change, done) for change in now}
         goals = _ToolGoals.between(present, wanted, now)
         outcomes.append((yield from _edit(context, limited, goals, kind, deadline)))
+
+
+def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
+    """The next operation for a change, and the session number of what it changes: the points of all users are one."""
+    kind = _kind(change, done)
+    return (change.reference.find().data.session_uid if kind == "points" else change.reference.session_uid), kind
 
 
 def _kind(change: Change, done: set[tuple[int, str]]) -> str:
