@@ -70,7 +70,7 @@ def subdivision_weights(
 
     Vertices are in Blender's order: those of the cage, then those inside edges (edge by edge), then those inside faces.
 
-    levels         0 to 6: an edge is divided into 2^levels; 0 returns the cage
+    levels         0 to 11: an edge is divided into 2^levels; 0 returns the cage
     limit_surface  whether vertices are on the limit surface instead of on the refined mesh
     quality        1 to 10: levels of refinement around irregular vertices and creases for the limit surface
     simple         whether to divide without smoothing
@@ -88,7 +88,7 @@ def subdivided_faces(cage: Cage, levels: int = 1) -> Indices:
 
     The faces of one cage face are consecutive and have its orientation.
 
-    levels  1 to 6
+    levels  1 to 11
 
     Raises InputError as `subdivision_weights` does.
     """
@@ -108,7 +108,7 @@ def catmull_clark(
 
     Controls are the world positions of the cage's vertices, (V, 3). A diagonal from the first corner divides each quad
     of `subdivided_faces` into two triangles. Arguments and errors are those of `subdivision_weights`, with levels 1 to
-    6.
+    11.
     """
     quads = subdivided_faces(cage, levels)
     weights = subdivision_weights(
@@ -126,7 +126,7 @@ def loop(
     into 4^levels, which are consecutive and have its orientation. Creases and boundaries follow the rules of
     `catmull_clark` (a crease of 1 is infinitely sharp) with the masks of Loop's scheme. [Loop 1987; Hoppe et al. 1994]
 
-    Arguments are those of `subdivision_weights`, with levels 1 to 6.
+    Arguments are those of `subdivision_weights`, with levels 1 to 11.
 
     Raises InputError as `subdivision_weights` does, and for a face that is not a triangle.
     """

@@ -140,7 +140,7 @@ def test_bad_cages_are_named(cage: stiv.Cage, message: str) -> None:
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"levels": 7}, "levels is 7"), ({"quality": 0}, "quality is 0"), ({"boundary": "none"}, 'boundary "none"')],
+    [({"levels": 12}, "levels is 12"), ({"quality": 0}, "quality is 0"), ({"boundary": "none"}, 'boundary "none"')],
 )
 def test_bad_options_are_named(options: dict[str, Any], message: str) -> None:
     with pytest.raises(stiv.InputError, match=message):

@@ -97,6 +97,9 @@ def test_no_level_and_many_levels() -> None:
     with linked(new_mesh(creased_cylinder())) as item:
         for levels in (0, 4, 5, 6):
             check_equal(item, levels=levels)
+    with linked(new_mesh(grid(2))) as item:
+        for limit_surface in (True, False):
+            check_equal(item, levels=8, limit_surface=limit_surface)
 
 
 def test_faces_are_those_of_blender(monkey: Any) -> None:

@@ -19,7 +19,7 @@ enum class BoundarySmoothing {
 };
 
 struct SubdivisionOptions {
-  int levels = 1;             ///< 0..6; an edge becomes 2^levels edges
+  int levels = 1;             ///< 0..11, as in Blender; an edge becomes 2^levels edges
   bool limit_surface = true;  ///< vertices on the limit surface, adaptive refinement to `quality`
   int quality = 3;            ///< 1..10, the modifier's own value; used with limit_surface
   bool simple = false;        ///< the modifier's "Simple" type: no smoothing
@@ -50,7 +50,7 @@ using Quads = Eigen::Matrix<Index, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
 /// The faces of the mesh subdivided by Catmull-Clark, all quads, in the vertex order of `subdivision_weights`, with the
 /// orientation and in the order of the cage's faces.
-/// @param levels 1..6
+/// @param levels 1..11
 /// @throws InputError as `subdivision_weights`
 Quads subdivided_faces(const Cage& cage, int levels);
 

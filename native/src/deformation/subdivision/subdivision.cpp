@@ -63,10 +63,12 @@ Eigen::Matrix<Index, Eigen::Dynamic, corners, Eigen::RowMajor> as_matrix(
   return matrix;
 }
 
+constexpr int max_levels = 11;  // of Blender's modifier
+
 }  // namespace
 
 WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& options) {
-  check_range("levels", options.levels, 0, 6);
+  check_range("levels", options.levels, 0, max_levels);
   check_range("quality", options.quality, 1, 10);
   check_cage(cage);
   if (options.scheme == SubdivisionScheme::loop) check_triangles(cage);
@@ -96,7 +98,7 @@ WeightMatrix subdivision_weights(const Cage& cage, const SubdivisionOptions& opt
 }
 
 Quads subdivided_faces(const Cage& cage, int levels) {
-  check_range("levels", levels, 1, 6);
+  check_range("levels", levels, 1, max_levels);
   check_cage(cage);
   const CageEdges edges(cage);
   const SubdividedVertices vertices(cage, edges, SubdivisionScheme::catmull_clark, levels);
@@ -107,7 +109,7 @@ Quads subdivided_faces(const Cage& cage, int levels) {
 }
 
 Triangles subdivided_triangles(const Cage& cage, int levels) {
-  check_range("levels", levels, 1, 6);
+  check_range("levels", levels, 1, max_levels);
   check_cage(cage);
   check_triangles(cage);
   const CageEdges edges(cage);

@@ -32,6 +32,8 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     selected = (
         _in_edit_mode(context, objects) if context.mode != "OBJECT" else [ob for ob in objects if ob.select_get()]
     )
+    if context.mode == "EDIT_MESH" and not any(ob.data.total_vert_sel for ob in selected):
+        raise nothing_selected()  # before modifiers are read, which can take long
     participants = [
         participant for ob in objects if (participant := make_participant(ob, ob in selected, settings)) is not None
     ]
@@ -49,6 +51,11 @@ def find_clothes(context: bpy.types.Context, settings: EditSettings) -> list[Par
     objects = [ob for ob in context.view_layer.objects if ob not in rigs and is_visible(context, ob)]
     found = [each for ob in objects if (each := make_participant(ob, False, settings)) is not None]
     return merge_participants([each for each in found if each.role != "rigid"])
+
+
+def nothing_selected() -> InputError:
+    """The error for a selection without vertices or points that can move."""
+    return InputError("nothing movable is selected; select vertices, points or objects with a surface")
 
 
 def nothing_movable(names: Sequence[str]) -> InputError:

@@ -12,7 +12,7 @@ from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
-from stiv.blender.controls.participants import nothing_movable
+from stiv.blender.controls.participants import nothing_movable, nothing_selected
 from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
@@ -103,7 +103,7 @@ def _is_animated(participant: Participant) -> bool:
 
 def _nothing_moves(participants: Sequence[Participant], solid: Sequence[VisibleMesh]) -> InputError:
     if any(each.role != "rigid" for each in participants):
-        return InputError("nothing movable is selected; select vertices, points or objects with a surface")
+        return nothing_selected()
     shown = {mesh.owner.name for mesh in solid}
     names = [each.reference.name for each in participants if each.selected]
     return nothing_movable([name for name in names if name not in shown])
