@@ -4,7 +4,7 @@
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, mesh, select
+from building import add, add_cube, add_grid, mesh, select, snapshot
 from mathutils import Vector
 
 import stiv
@@ -68,6 +68,17 @@ def test_children_are_copied_with_their_parent() -> None:
     copies = place(bpy.context, PlaceSettings(EDIT, count=3)).changed
     assert [len(bpy.data.objects[name].children) for name in copies] == [1] * len(copies) and len(copies) == 3
     assert moss.parent == stone and not check_scene(bpy.context).pairs
+
+
+def test_an_object_that_its_parent_shears_is_refused_by_name() -> None:
+    """A copy without the parent has another shape."""
+    parent = add_cube("Parent", (20, 0, 0), 0.5, scale=(3, 1, 1))
+    stone = add_cube("Stone", size=0.5, parent=parent, rotation_euler=(0, 0, 0.7))
+    select(add_grid("Ground", 8, 5.0), stone)
+    before = snapshot()
+    with pytest.raises(stiv.InputError, match="^Stone: its parent shears it; apply its transform$"):
+        place(bpy.context, PlaceSettings(EDIT))
+    assert snapshot() == before
 
 
 def test_without_a_surface_or_cancelled_nothing_is_added() -> None:

@@ -7,10 +7,12 @@ import bpy
 import mathutils
 import numpy as np
 
+from stiv import InputError
 from stiv.blender.controls.parent_space import ParentSpace, keep_locked, read_parent_space
 from stiv.blender.controls.rotations import euler_angles, is_rotation, nearest_rotation
 from stiv.blender.scene.arrays import Floats, as_matrix, invert
 
+RIGHT_ANGLE = 1e-5  # cosine of an angle that still is one
 ROUNDING = 2.0**-48  # relative error of a location in the parent's space
 ROTATION_PROPERTIES = {"QUATERNION": "rotation_quaternion", "AXIS_ANGLE": "rotation_axis_angle"}
 
@@ -63,6 +65,14 @@ def read_transform(ob: bpy.types.Object) -> ObjectTransform:
         tuple(ob.location), name, tuple(getattr(ob, name)), tuple(ob.scale), world, parent_matrix, basis,
         read_parent_space(ob),
     )  # fmt: skip
+
+
+def check_axes(name: str, world: Floats) -> None:
+    """Raise InputError for an object with this world matrix, (4, 4), unless its axes are at right angles."""
+    axes = world[:3, :3] / np.maximum(np.linalg.norm(world[:3, :3], axis=0), np.finfo(float).tiny)
+    products = axes.T @ axes
+    if np.abs(products - np.diag(np.diag(products))).max() > RIGHT_ANGLE:
+        raise InputError(f"{name}: its parent shears it; apply its transform")
 
 
 def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats, factors: Floats) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.controls.object_transform import ObjectTransform, read_transform
+from stiv.blender.controls.object_transform import ObjectTransform, check_axes, read_transform
 from stiv.blender.controls.placed_stack import PlacedStack
 from stiv.blender.controls.placement_goals import PivotDeformation, PlacementGoal, RotationGoal, ScaleGoal
 from stiv.blender.controls.placement_motion import PlacementMotion
@@ -110,9 +110,8 @@ def _axes(group: RigidGroup, starts: Sequence[ObjectTransform]) -> Floats:
     """World axes of the group's roots as a rotation, (3, 3). Raises InputError if they are not orthogonal."""
     frames = []
     for root, start in zip(group.roots, starts, strict=True):
+        check_axes(root.reference.name, start.world)
         columns = start.world[:3, :3] / np.linalg.norm(start.world[:3, :3], axis=0)
-        if np.abs(columns.T @ columns - np.eye(3)).max() > 1e-5:
-            raise InputError(f"{root.reference.name}: its parent shears it; apply its transform")
         frames.append(nearest_rotation(columns * [1, 1, np.sign(np.linalg.det(columns))]))
     for root, frame in zip(group.roots[1:], frames[1:], strict=True):
         if np.abs(np.abs(frames[0].T @ frame) - np.eye(3)).max() > 1e-5:

@@ -11,6 +11,7 @@ import mathutils
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.object_transform import check_axes
 from stiv.blender.controls.rotations import rotation_matrix, rotation_vector
 from stiv.blender.layout.containment import is_outside
 from stiv.blender.layout.layout_edit import LayoutEdit
@@ -70,6 +71,7 @@ class Place(LayoutTask):
             raise InputError("no active object; make the object to copy active")
         names = {settings.surface} if settings.surface else {ob.name for ob in context.selected_objects}
         self._context, self._settings, self._source = context, settings, source.name
+        check_axes(source.name, as_matrix(source.matrix_world))  # copies have no parent, and so no shear
         self._edit = LayoutEdit(context, settings.edit, [source])
         self._corners = _surface_corners(self._edit, names - {source.name})
         self._axis = as_matrix(source.matrix_world)[:3, 2]
