@@ -36,7 +36,9 @@ def exclude_undecided(
     These are pairs within one object, and pairs of objects that move `together`.
     """
     chosen = frozenset(
-        _key(a, b) for a, b in assembly.face_pairs(found) if a.object == b.object or (a.object in together and b.object in together)
+        _key(a, b)
+        for a, b in assembly.face_pairs(found)
+        if a.object == b.object or (a.object in together and b.object in together)
     )
     return Exclusions(excluded.pairs | chosen, excluded.shapes)
 
