@@ -184,7 +184,9 @@ def _passes(
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
-    """The next operation for a change, and the session number of what it changes: the points of all users are one."""
+    """The next operation for a change, with the session number of the object; for points, which users share, of the
+    data.
+    """
     kind = _kind(change, done)
     return (change.reference.find().data.session_uid if kind == "points" else change.reference.session_uid), kind
 
