@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The session of an edit with its history; opened again when flipped triangles have to stay free of intersections."""
 
+import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Any
+
+import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
@@ -146,7 +149,7 @@ class EditSolver:
 
     def retry_with(self, flips: Sequence[FaceTriangles]) -> bool:
         """Add flipped triangles, go back to the last state that is free with them, and repeat the later calls from
-        there.
+        there; with a time budget, only as long as it lasts, and then the last call.
 
         Returns False, with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
@@ -164,8 +167,12 @@ class EditSolver:
         goal = self.trail.goal_at(state)
         run(self._open_session(assembly, state.controls))
         self.session.restore(state.controls, goal)
-        for call in self.trail.truncate_at(state):
-            run(self.solve(call.goal))
+        calls = self.trail.truncate_at(state)
+        end = time.monotonic() + (self._settings.time_budget or np.inf)
+        last = max((number for number, call in enumerate(calls) if call.goal is not None), default=0)
+        for number, call in enumerate(calls):
+            if number >= last or time.monotonic() < end:
+                run(self.solve(call.goal))
         return True
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
