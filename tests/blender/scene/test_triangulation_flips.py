@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A quad that bends until Blender flips its diagonal, with a post in the place of the flip."""
 
+from itertools import count
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -10,6 +12,8 @@ from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
+from stiv.blender.edit import solver as solver_module
+from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import read_scene
 from stiv.blender.scene.triangulation_flips import (
@@ -78,14 +82,14 @@ def test_the_second_triangulation_is_the_one_that_blender_flips_to() -> None:
     assert {tuple(sorted(row)) for row in extended.surface.triangles[2:].tolist()} == present
 
 
-def begin_with_wings(quad: Any) -> BlenderEdit:
+def begin_with_wings(quad: Any, **settings: Any) -> BlenderEdit:
     edit_mode(quad)
     bpy.ops.mesh.select_all(action="DESELECT")
     import bmesh
 
     for vertex in bmesh.from_edit_mesh(quad.data).verts:
         vertex.select = vertex.index in WINGS
-    return BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    return BlenderEdit.begin(bpy.context, EditSettings(**settings), "move")
 
 
 def test_an_edit_that_would_flip_into_a_post_is_deflected() -> None:
@@ -99,6 +103,21 @@ def test_an_edit_that_would_flip_into_a_post_is_deflected() -> None:
     assert report.result is not None
     assert check_scene(bpy.context).pairs == ()
     assert evaluated(quad)[WINGS, 2].min() > 0.2
+
+
+def test_a_drag_repeats_its_solves_only_within_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Twenty calls since the last picture; then it continues from a free state to the last goal."""
+    quad = add_quad(0)
+    add_post()
+    edit = begin_with_wings(quad, time_budget=10.0)
+    for height in np.linspace(0.1, 2, 20):
+        edit.drag(shift(z=height))
+    solved, solve, clock = [], EditSolver.solve, SimpleNamespace(monotonic=count(0, 100).__next__)
+    monkeypatch.setattr(solver_module, "time", clock)
+    monkeypatch.setattr(EditSolver, "solve", lambda solver, goal: solved.append(goal) or solve(solver, goal))
+    report = edit.write()
+    assert report.passed and report.result is not None and 0 < len(solved) <= 2
+    assert check_scene(bpy.context).pairs == () and np.array_equal(solved[-1], edit.goal)
 
 
 def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:
