@@ -184,9 +184,7 @@ def _passes(
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
-    """The next operation for a change, with the session number of the object; for points, which users share, of the
-    data.
-    """
+    """The session number of the object, or of the data for points, which users share; and the next operation there."""
     kind = _kind(change, done)
     return (change.reference.find().data.session_uid if kind == "points" else change.reference.session_uid), kind
 

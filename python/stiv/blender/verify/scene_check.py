@@ -122,9 +122,8 @@ def find_pairs(assembly: Assembly, threads: int = 0, most: int = 0) -> tuple[Fac
 
 def _first_of_each(assembly: Assembly, pairs: Indices, most: int) -> Indices:
     """The first pairs of triangles, (k, 2), of each two meshes."""
-    count = len(assembly.meshes)
-    mesh = np.repeat(np.arange(count), [len(each.triangles) for each in assembly.meshes])[pairs]
-    keys = mesh[:, 0] * count + mesh[:, 1]
+    mesh = _meshes_of(assembly, pairs)
+    keys = mesh[:, 0] * len(assembly.meshes) + mesh[:, 1]
     order = np.argsort(keys, kind="stable")
     rank = np.arange(len(order)) - np.searchsorted(keys[order], keys[order])
     return np.asarray(pairs[np.sort(order[rank < most])], np.int32)
@@ -164,14 +163,18 @@ def _edge_contacts(assembly: Assembly, intersecting_triangles: Indices) -> NDArr
 
 def _own_triangles(assembly: Assembly, pairs: Indices) -> dict[int, tuple[Indices, Indices]]:
     """For each mesh with pairs inside it: their rows, and the pairs with triangle numbers of the mesh."""
-    counts = [len(each.triangles) for each in assembly.meshes]
-    mesh = np.repeat(np.arange(len(counts)), counts)[pairs]
+    mesh = _meshes_of(assembly, pairs)
     rows = np.flatnonzero(mesh[:, 0] == mesh[:, 1]).astype(np.int32)
     rows = rows[np.argsort(mesh[rows, 0], kind="stable")]
     numbers, firsts = np.unique(mesh[rows, 0], return_index=True)
-    starts = np.cumsum([0, *counts]).astype(np.int32)
+    starts = np.cumsum([0, *(len(each.triangles) for each in assembly.meshes)]).astype(np.int32)
     groups = zip(numbers.tolist(), np.split(rows, firsts[1:]), strict=False)
     return {number: (group, pairs[group] - starts[number]) for number, group in groups}
+
+
+def _meshes_of(assembly: Assembly, pairs: Indices) -> NDArray[np.int64]:
+    """The number of the mesh of each triangle in pairs, (k, 2)."""
+    return np.repeat(np.arange(len(assembly.meshes)), [len(each.triangles) for each in assembly.meshes])[pairs]
 
 
 def nearest_pair(context: bpy.types.Context, settings: EditSettings | None = None) -> stiv.LeastDistance | None:
