@@ -71,7 +71,8 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
             same = dragged if dragged is not None and dragged.values == self._values() else None
             motion = self._motion(transform, frame)
             reused = _reused(edit, same, motion)
-            result, report = reused or self._applied(context, edit, _solve_values(edit, motion, transform, frame))
+            steps = self._applied(context, edit, _solve_values(edit, motion, transform, frame))
+            result, report = reused or self._run(context, steps)
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
         return self.finish_task(context, (result, report))
@@ -117,15 +118,15 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         context: bpy.types.Context,
         edit: stiv_blender.BlenderEdit,
         steps: stiv_blender.Steps[stiv_blender.EditResult],
-    ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
-        result = self._run(context, steps)
-        return self._written(context, edit, result)
+    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
+        result = yield from steps
+        return (yield from self._written(context, edit, result))
 
     def _written(
         self, context: bpy.types.Context, edit: stiv_blender.BlenderEdit, result: stiv_blender.EditResult
-    ) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport]:
-        """Write the accepted state, report what the edit left out, and end the edit."""
-        report = edit.write()
+    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
+        """Steps that write the accepted state, report what the edit left out, and end the edit."""
+        report = yield from edit.write_steps()
         insert_keyframes(context, edit)
         left_out = left_out_text(context, edit)
         if left_out:
@@ -149,7 +150,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         request = self.request(context.scene)
         edit, result = yield from apply_values(self, context, request, self.requested(), self._motion)
         try:
-            return self._written(context, edit, result)
+            return (yield from self._written(context, edit, result))
         except Exception as error:
             restore_after_error(edit, error)
             raise

@@ -13,6 +13,7 @@ from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
 from stiv.blender.edit import solver as solver_module
+from stiv.blender.edit import state_writer as writer_module
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import read_scene
@@ -113,11 +114,28 @@ def test_a_drag_repeats_its_solves_only_within_its_time(monkeypatch: pytest.Monk
     for height in np.linspace(0.1, 2, 20):
         edit.drag(shift(z=height))
     solved, solve, clock = [], EditSolver.solve, SimpleNamespace(monotonic=count(0, 100).__next__)
-    monkeypatch.setattr(solver_module, "time", clock)
+    for module in (solver_module, writer_module):
+        monkeypatch.setattr(module, "time", clock)
     monkeypatch.setattr(EditSolver, "solve", lambda solver, goal: solved.append(goal) or solve(solver, goal))
     report = edit.write()
     assert report.passed and report.result is not None and 0 < len(solved) <= 2
     assert check_scene(bpy.context).pairs == () and np.array_equal(solved[-1], edit.goal)
+
+
+def test_a_write_shows_the_last_written_state_while_it_solves_again() -> None:
+    """Others look at the scene then: the window draws it, and may save it."""
+    quad = add_quad(0)
+    add_post()
+    edit = begin_with_wings(quad)
+    edit.apply(shift(z=2))
+    steps, shown, outcome = edit.write_steps(), [], None
+    with pytest.raises(StopIteration) as end:
+        while True:
+            call = steps.send(outcome)
+            shown.append(evaluated(quad)[WINGS, 2].max())
+            outcome = call.run()
+    assert len(shown) > 1 and set(shown) == {0.0}
+    assert end.value.value.passed and evaluated(quad)[WINGS, 2].min() > 0.2
 
 
 def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:

@@ -18,6 +18,7 @@ from stiv.blender.controls.subdivision import (
     identity_weights,
     moved_columns,
     stack_deformations,
+    stack_weights,
 )
 from stiv.blender.scene.arrays import Floats, Indices, to_local
 from stiv.blender.scene.stack_twin import kept_twins
@@ -98,15 +99,15 @@ class ObservedStack:
 
     def _find_ends(self, places: Sequence[int], settings: Sequence[BlockSettings]) -> stiv.Deformation | None:
         """From the vertices of all blocks to those of all surfaces; None if these are the same."""
-        if len(places) == 1 and settings[0].end.subdivision is None:
-            return None
         counts = [block.count for block in self._blocks.blocks]
+        if list(places) == [*range(len(counts))] and all(each.end.subdivision is None for each in settings):
+            return None
         rows = []
         for place, each in zip(places, settings, strict=True):
             block, subdivision = self._blocks.blocks[place], each.end.subdivision
             weights = identity_weights(block.count) if subdivision is None else block.end_weights(subdivision)
-            rows.append(stiv.linear(moved_columns(weights, sum(counts[:place]), sum(counts))))
-        return stack_deformations(rows)
+            rows.append(moved_columns(weights, sum(counts[:place]), sum(counts)))
+        return stiv.linear(stack_weights(rows))
 
 
 @dataclass(frozen=True)

@@ -56,21 +56,20 @@ def stack_deformations(deformations: Sequence[stiv.Deformation]) -> stiv.Deforma
     if len(deformations) == 1:
         return deformations[0]
     parts = [stiv.linear_weights(deformation) for deformation in deformations]
-    weights = [part[0] for part in parts]
+    offsets = [np.zeros((each.shape[0], 3)) if offset is None else offset for each, offset in parts]
+    return stiv.linear(stack_weights([each for each, _ in parts]), np.concatenate(offsets))
+
+
+def stack_weights(weights: Sequence[stiv.Weights]) -> stiv.Weights:
+    """Stack the weights of the same controls."""
     ends = np.cumsum([0, *(len(each.data) for each in weights)])
     starts = [np.asarray(each.indptr[:-1]) + end for each, end in zip(weights, ends, strict=False)]
-    shape = (sum(each.shape[0] for each in weights), weights[0].shape[1])
-    offsets = [
-        np.zeros((each.shape[0], 3)) if offset is None else offset
-        for each, (_, offset) in zip(weights, parts, strict=True)
-    ]
-    whole = stiv.Weights(
+    return stiv.Weights(
         np.append(np.concatenate(starts), ends[-1]),
         np.concatenate([each.indices for each in weights]),
         np.concatenate([each.data for each in weights]),
-        shape,
+        (sum(each.shape[0] for each in weights), weights[0].shape[1]),
     )
-    return stiv.linear(whole, np.concatenate(offsets))
 
 
 def _catmull_clark(

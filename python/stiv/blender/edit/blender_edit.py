@@ -370,11 +370,15 @@ class BlenderEdit:
 
         Nothing is tested while collisions are off. Raises SceneChangedError if an object was removed or changed.
         """
+        return run(self.write_steps())
+
+    def write_steps(self) -> Steps[WriteReport]:
+        """Steps of `write`; the scene shows the last written state between them."""
         if self._unguarded is not None:
             self._writer.write(self._unguarded)
             return WriteReport(True)
         with kept_twins():
-            return self._writer.write_accepted(self._goal)
+            return (yield from self._writer.write_accepted(self._goal))
 
     def take_state(self) -> TakenState | None:
         """Take the accepted state, so that the next solve can begin before it is written.

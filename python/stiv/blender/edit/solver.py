@@ -7,8 +7,6 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-import numpy as np
-
 import stiv
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
@@ -147,11 +145,11 @@ class EditSolver:
             self.session.restore(controls, goal)
         self.trail = Trail(controls, goal)
 
-    def retry_with(self, flips: Sequence[FaceTriangles]) -> bool:
-        """Add flipped triangles, go back to the last state that is free with them, and repeat the later calls from
-        there; with a time budget, only as long as it lasts, and then the last call.
+    def retry_with(self, flips: Sequence[FaceTriangles], end: float) -> Steps[bool]:
+        """Steps that add flipped triangles, go back to the last state that is free with them, and repeat the later
+        calls from there; after `end`, a time of the monotonic clock, only the last drag.
 
-        Returns False, with nothing changed, if there are no flips, or no state of the trail is free with them.
+        They return False, with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
         if not flips:
             return False
@@ -165,14 +163,13 @@ class EditSolver:
         if state is None:
             return False
         goal = self.trail.goal_at(state)
-        run(self._open_session(assembly, state.controls))
+        yield from self._open_session(assembly, state.controls)
         self.session.restore(state.controls, goal)
         calls = self.trail.truncate_at(state)
-        end = time.monotonic() + (self._settings.time_budget or np.inf)
         last = max((number for number, call in enumerate(calls) if call.goal is not None), default=0)
         for number, call in enumerate(calls):
-            if number >= last or time.monotonic() < end:
-                run(self.solve(call.goal))
+            if number == last or time.monotonic() < end:
+                yield from self.solve(call.goal)
         return True
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:

@@ -2,6 +2,7 @@
 """Writes accepted states into Blender, reads the evaluation back, and tests it."""
 
 import os
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -20,6 +21,7 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.near_assembly import NearAssembly, near_assembly
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification, Verifier
+from stiv.task import Steps
 
 MAX_HALVINGS = 8  # of a step that fails the test in Blender's evaluation
 MAX_FLIP_RETRIES = 4  # times that an edit is solved again because Blender flipped triangles of bent faces
@@ -134,17 +136,22 @@ class StateWriter:
         self.write(shown.controls)
         return self._is_free_beside(shown.surface, shown.deviations)
 
-    def write_accepted(self, goal: Floats) -> WriteReport:
-        """Write the accepted controls, test Blender's evaluation, and start a new trail toward the same goal.
+    def write_accepted(self, goal: Floats) -> Steps[WriteReport]:
+        """Steps that write the accepted controls, test Blender's evaluation, and start a new trail to the same goal.
 
         Blender flips the diagonal of quads that bend far. If that causes intersections, both triangulations are kept
-        free from then on, and the path since the last write is solved again. If the test still fails, the last state on
-        the path that passes is written. Raises SceneChangedError if an object was removed or changed.
+        free from then on, and the path since the last write is solved again, within one time budget. If the test still
+        fails, the last state on the path that passes is written. Between steps, the scene shows the last written state.
+        Raise SceneChangedError if an object was removed or changed.
         """
         verification = self._write_session()
         solved_again = False
+        end = time.monotonic() + (self._settings.time_budget or np.inf)
         for _ in range(MAX_FLIP_RETRIES):
-            if verification.passed or not self._solver.retry_with(verification.flips):
+            if verification.passed or (solved_again and time.monotonic() > end):
+                break
+            self.write(self._solver.trail.written)
+            if not (yield from self._solver.retry_with(verification.flips, end)):
                 break
             solved_again = True
             verification = self._write_session()

@@ -263,7 +263,7 @@ def move_to_goal(
     if not reached and time.monotonic() < end:
         results.append((yield from edit.settle_steps()))
     yield None
-    report = edit.write()
+    report = yield from edit.write_steps()
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
     cut = any(map(is_cut_by_topology, results[-1:]))
