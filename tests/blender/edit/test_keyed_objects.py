@@ -159,6 +159,10 @@ def test_values_of_materials_and_nodes_that_are_not_keyed_yet_stay(guard: str) -
     for first, second in pairwise(nodes):
         tree.links.new(first.outputs[0], second.inputs[0])
     offset = nodes[1].inputs["Offset"]
+    for name, value, other in (('A "name"', 0.0, 0.3), ("Three", (0.0, 0.0, 0.0), (1.0, 2.0, 3.0)), ("Whole", 1, 7)):
+        material[name] = value
+        material.keyframe_insert(f'["{bpy.utils.escape_identifier(name)}"]', frame=1)
+        material[name] = other
     for owner, name, value in ((material, "roughness", 0.9), (offset, "default_value", (0, 0, 0.5))):
         owner.keyframe_insert(name, frame=1)
         setattr(owner, name, value)
@@ -171,6 +175,7 @@ def test_values_of_materials_and_nodes_that_are_not_keyed_yet_stay(guard: str) -
     assert edit.apply(shift(z=0.1)).status == "reached" and edit.write().passed
     edit.restore()
     assert material.roughness == pytest.approx(0.9) and tuple(offset.default_value) == (0, 0, 0.5)
+    assert material["A \"name\""] == 0.3 and tuple(material["Three"]) == (1.0, 2.0, 3.0) and material["Whole"] == 7
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
     assert evaluated(cube)[:, 2].max() == pytest.approx(1.5)

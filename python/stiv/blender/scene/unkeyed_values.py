@@ -32,8 +32,7 @@ class UnkeyedValues:
         """Write the values that differ now; False if none does."""
         changed = [each for each in self._values if _read(each[0], each[1]) != each[2]]
         for block, path, value in changed:
-            owner, _, name = path.rpartition(".")
-            setattr(block.path_resolve(owner) if owner else block, name, value)
+            _write(block, path, value)
         return bool(changed)
 
 
@@ -47,14 +46,31 @@ def _shared_blocks() -> Iterator[bpy.types.ID]:
 
 def _keyed_values(block: bpy.types.ID) -> Iterator[tuple[str, Any]]:
     for path in keyed_paths(block):
-        with suppress(ValueError):  # a path that no longer leads anywhere
-            if not path.endswith("]"):  # a custom property
-                yield path, _read(block, path)
+        with suppress(ValueError, AttributeError, KeyError):  # a path that no longer leads anywhere
+            yield path, _read(block, path)
 
 
 def _read(block: bpy.types.ID, path: str) -> Any:
-    value = block.path_resolve(path)
+    owner, name, is_custom = _find(block, path)
+    value = owner[name] if is_custom else getattr(owner, name)
     return tuple(value) if hasattr(value, "__len__") and not isinstance(value, str) else value
+
+
+def _write(block: bpy.types.ID, path: str, value: Any) -> None:
+    owner, name, is_custom = _find(block, path)
+    if is_custom:
+        owner[name] = value
+    else:
+        setattr(owner, name, value)
+
+
+def _find(block: bpy.types.ID, path: str) -> tuple[Any, str, bool]:
+    """The owner of the property at a path, its name, and whether it is a custom property."""
+    is_custom = path.endswith('"]')
+    owner, _, name = path.rpartition('["' if is_custom else ".")
+    if is_custom:
+        name = bpy.utils.unescape_identifier(name.removesuffix('"]'))
+    return (block.path_resolve(owner) if owner else block), name, is_custom
 
 
 def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
