@@ -81,7 +81,7 @@ def is_live(context: bpy.types.Context) -> bool:
 
 
 def may_collide(context: bpy.types.Context) -> bool:
-    """Whether the selection may have surfaces that collide: not for lights, cameras or the role No Collision.
+    """Whether the selection may move surfaces that collide: not for lights, cameras or the role No Collision.
 
     Transforms of origins, or of parents without their children, are Blender's own.
     """
@@ -91,10 +91,8 @@ def may_collide(context: bpy.types.Context) -> bool:
         return True
     if any(getattr(context.scene.tool_settings, name) for name in ONLY_BLENDER):
         return False
-    return any(
-        stiv_blender.may_have_surface(obj) and obj.stiv.role not in {"ignored", "obstacle"}
-        for obj in context.selected_objects
-    )
+    chosen = [obj for obj in context.selected_objects if obj.stiv.role not in {"ignored", "obstacle"}]
+    return stiv_blender.moves_surface(context, chosen)
 
 
 def constrained_axes(axis: int, plane: bool) -> tuple[bool, bool, bool]:

@@ -2,6 +2,7 @@
 """Simplified Chinese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "is tied to other objects; use Collision Move": "与其他物体相关联；请使用碰撞移动",
     "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 triangle has no area": "1 个三角形没有面积",
@@ -154,5 +155,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{}使用“{}”；请取消选择其一",
     "{} vertices follow": "{} 个顶点跟随",
     "{} vertices, {} has {}; use another target": "{} 个顶点，{} 有 {} 个；请使用其他目标物",
+    "{}{}: cannot move along; move it with Blender": "{}{}：无法一起移动；请用 Blender 移动",
     "{}{}: no surface; also select an object that has one": "{}{}：没有表面；请同时选择有表面的物体",
 }

@@ -2,6 +2,7 @@
 """German messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "is tied to other objects; use Collision Move": "ist an andere Objekte gebunden; „Bewegen mit Kollision“ nutzen",
     "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 triangle has no area": "1 Dreieck hat keine Fläche",
@@ -154,5 +155,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{} verwendet "{}"; eines abwählen',
     "{} vertices follow": "{} Vertices folgen",
     "{} vertices, {} has {}; use another target": "{} Vertices, {} hat {}; anderes Ziel verwenden",
+    "{}{}: cannot move along; move it with Blender": "{}{}: kann nicht mitbewegt werden; mit Blender bewegen",
     "{}{}: no surface; also select an object that has one": "{}{}: keine Oberfläche; auch ein Objekt mit Oberfläche auswählen",
 }

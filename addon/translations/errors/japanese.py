@@ -2,6 +2,7 @@
 """Japanese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "is tied to other objects; use Collision Move": "他のオブジェクトに結び付いています。衝突判定付き移動を使ってください",
     "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 triangle has no area": "面積のない三角形が 1 個あります",
@@ -154,5 +155,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{} が「{}」を使っています。一方の選択を解除してください",
     "{} vertices follow": "{} 頂点が従います",
     "{} vertices, {} has {}; use another target": "頂点 {} 個ですが {} は {} 個です。別のターゲットを使ってください",
+    "{}{}: cannot move along; move it with Blender": "{}{}: 一緒に移動できません。Blender で移動してください",
     "{}{}: no surface; also select an object that has one": "{}{}: サーフェスがありません。サーフェスのあるオブジェクトも選択してください",
 }

@@ -2,6 +2,7 @@
 """Korean messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
+    "is tied to other objects; use Collision Move": "다른 오브젝트에 묶여 있음; 충돌 이동을 사용하세요",
     "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 triangle has no area": "넓이가 없는 삼각형 1개",
@@ -154,5 +155,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{}이(가) "{}"을(를) 사용함; 하나를 선택 해제하세요',
     "{} vertices follow": "버텍스 {}개가 따라감",
     "{} vertices, {} has {}; use another target": "버텍스 {}개, {}은(는) {}개; 다른 대상을 사용하세요",
+    "{}{}: cannot move along; move it with Blender": "{}{}: 함께 이동할 수 없음; Blender로 이동하세요",
     "{}{}: no surface; also select an object that has one": "{}{}: 표면이 없음; 표면이 있는 오브젝트도 선택하세요",
 }

@@ -5,7 +5,7 @@ from stiv.blender.controls.bone_set import has_movable_bones, poses_surface
 from stiv.blender.controls.directions import FreeDirections
 from stiv.blender.controls.loop_surfaces import add_refined, refresh, remove_refined
 from stiv.blender.controls.motion import Alignment, Influence, Motion
-from stiv.blender.controls.participants import may_have_surface
+from stiv.blender.controls.participants import moves_surface
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.contact_region import ContactRegion, contact_region
 from stiv.blender.edit.drawable import triangles_of
@@ -138,7 +138,7 @@ __all__ = [
     "intersection_text",
     "is_cut_by_topology",
     "kept_twins",
-    "may_have_surface",
+    "moves_surface",
     "morph",
     "movable_keys",
     "moved_bones",

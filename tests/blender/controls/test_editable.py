@@ -181,7 +181,7 @@ def test_lattice_moved_away_from_its_mesh() -> None:
     accepted()
     accepted(kind="rotate")
     select(lattice)
-    refused('Cube: Lattice "Bend" depends on "Lattice"')
+    accepted()
     select(cube, lattice)
     accepted()
     refused('Cube: moves, and so does its lattice "Lattice"; deselect one', DEFORM)
@@ -191,7 +191,7 @@ def test_objects_that_modifiers_refer_to() -> None:
     cube, other = add_cube("Cube"), add_cube("Other", (5, 0, 0))
     add_modifier(other, "BOOLEAN", "Cut", object=cube)
     select(cube)
-    refused('Other: Boolean "Cut" depends on "Cube"')
+    accepted()
     refused('Other: Boolean "Cut" depends on "Cube"', DEFORM)
     other.modifiers[0].show_viewport = other.modifiers[0].show_render = False
     accepted()

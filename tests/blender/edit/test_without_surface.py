@@ -5,8 +5,9 @@ from collections.abc import Callable
 from typing import Any
 
 import bpy
+import numpy as np
 import pytest
-from building import add, add_cube, add_grid, select, shift
+from building import add, add_cube, add_grid, select, shift, snapshot, stretch, turn
 
 from stiv import InputError
 from stiv.blender import BlenderEdit, EditSettings
@@ -31,24 +32,72 @@ def test_edits_work_beside_objects_without_a_surface(kind: str, responders: str)
     assert cube.location.x == pytest.approx(1) and other.location.x == 9
 
 
-@pytest.mark.parametrize("kind", DATA)
-def test_selected_objects_without_a_surface_move_along(kind: str) -> None:
-    add_grid("Floor", 2, 3.0)
-    other, cube = add("Other", DATA[kind](), (9, 0, 5)), add_cube("Cube", (0, 0, 1.5))
-    select(cube, other)
-    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
-    edit.apply(shift(z=-2))
-    assert edit.write().passed
-    assert 1 < cube.location.z < 1.01
-    assert other.location.z == pytest.approx(5 + cube.location.z - 1.5, abs=1e-6)
-
-
 OTHERS = {
     "camera": lambda: bpy.data.cameras.new("Other"),
     "armature": lambda: bpy.data.armatures.new("Other"),
     "empty": lambda: None,
     "pencil": lambda: getattr(bpy.data, "grease_pencils_v3", bpy.data.grease_pencils).new("Other"),
 }
+
+
+@pytest.mark.parametrize("kind", DATA | OTHERS)
+def test_selected_objects_without_a_surface_move_along(kind: str) -> None:
+    add_grid("Floor", 2, 3.0)
+    other, cube = add("Other", (DATA | OTHERS)[kind](), (9, 0, 5)), add_cube("Cube", (0, 0, 1.5))
+    select(cube, other)
+    start = snapshot()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    edit.apply(shift(z=-2))
+    assert edit.write().passed and edit.start_notes == ()
+    assert 1 < cube.location.z < 1.01
+    assert other.location.z == pytest.approx(5 + cube.location.z - 1.5, abs=1e-6)
+    edit.restore()
+    assert snapshot() == start
+
+
+@pytest.mark.parametrize("kind", ["rotate", "scale"])
+def test_they_turn_and_scale_along_about_the_pivot(kind: str) -> None:
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    assert edit.apply(turn(0.5, "Z") if kind == "rotate" else stretch(1.5)).status == "reached" and edit.write().passed
+    expected = (4 * np.cos(0.5), 4 * np.sin(0.5), 0) if kind == "rotate" else (6, 0, 0)
+    np.testing.assert_allclose(camera.location, expected, atol=1e-6)
+    assert camera.rotation_euler.z == pytest.approx(0.5 if kind == "rotate" else 0, abs=1e-6)
+    assert camera.scale.x == pytest.approx(1.5 if kind == "scale" else 1)
+
+
+def locked(ob: Any) -> None:
+    ob.lock_location = (True, False, False)
+
+
+def constrained(ob: Any) -> None:
+    ob.constraints.new("TRACK_TO").target = bpy.data.objects["Cube"]
+
+
+def turned(ob: Any) -> None:
+    ob.rotation_euler = (0.3, 0.2, 0.1)
+
+
+@pytest.mark.parametrize(("hold", "kind"), [(locked, "move"), (constrained, "move"), (turned, "scale")])
+def test_those_that_cannot_move_along_freely_stay_and_are_named(hold: Callable[[Any], None], kind: str) -> None:
+    """They once had no say; they must not hold the others either."""
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    hold(camera)
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    assert edit.start_notes == ("Camera: cannot move along; move it with Blender",)
+    assert edit.apply(shift(x=1) if kind == "move" else stretch(2.0)).status == "reached" and edit.write().passed
+    assert tuple(camera.location) == (4, 0, 0) and tuple(camera.scale) == (1, 1, 1)
+
+
+def test_a_locked_camera_stays_as_in_blender() -> None:
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    camera.lock_location = (True, True, True)
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    assert edit.apply(shift(x=1)).status == "reached" and edit.write().passed and edit.start_notes == ()
+    assert cube.location.x == 1 and camera.location.x == 4
 
 
 @pytest.mark.parametrize(

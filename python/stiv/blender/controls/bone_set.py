@@ -21,9 +21,9 @@ from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_visible
+from stiv.blender.scene.followers import find_followers
 from stiv.blender.scene.pose_bones import is_hidden, is_selected, moved_bones, selected_bones
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import find_followers
 from stiv.blender.settings import EditSettings
 
 CHANNELS = {"move": (LOCATION,), "rotate": (ROTATION,), "scale": (SCALE,)}  # that respond

@@ -3,6 +3,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -15,12 +16,13 @@ from stiv.blender.controls.curve_points import make_curve_set
 from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.garments import make_garments
 from stiv.blender.controls.handles import make_handle_sets
-from stiv.blender.controls.joined_seams import join_seams
+from stiv.blender.controls.joined_seams import join_notes, join_seams
 from stiv.blender.controls.lattice_modifier import lattice_deformation
 from stiv.blender.controls.lattice_points import check_lattice, make_lattice_set
+from stiv.blender.controls.passengers import add_passengers, leave_held_passengers
 from stiv.blender.controls.rigid_groups import (
     RigidGroup,
-    add_passengers,
+    add_followers,
     check_dependents,
     check_instances,
     find_rigid_groups,
@@ -55,6 +57,7 @@ def make_control_sets(
         assert posed.posed is not None
         _check_surface(posed, posed.posed.meshes)
         return [posed], []
+    participants, note = leave_held_passengers(context, participants, kind)
     participants = drop_locked(participants, kind)
     groups = find_rigid_groups(participants, evaluations_of(meshes), kind)
     by_lattice = {
@@ -62,7 +65,10 @@ def make_control_sets(
         for participant in participants
         if participant.role == "lattice"
     }
-    _check_independent(participants, groups, by_lattice, meshes)
+    deforming = {name for each in participants if each.role != "rigid" for name in _deformed_with(each)}
+    deformed = deforming.union(meshes[index].owner.name for indices in by_lattice.values() for index in indices)
+    groups = add_followers(groups, {mesh.owner.name for mesh in meshes}, deformed, context.scene)
+    _check_independent(participants, groups, by_lattice, meshes, deforming)
     groups = add_passengers(groups, {mesh.owner.name for mesh in meshes})
     control_sets = [_rigid(group, meshes, settings, kind) for group in groups]
     for participant in participants:
@@ -83,11 +89,13 @@ def make_control_sets(
     for control_set in control_sets:
         _check_surface(control_set, meshes)
         _check_references(control_set, {name for each in control_sets for name in each.names})
-    return [join_seams(each, meshes) for each in control_sets if each.surfaces], groups
+    found = [join_seams(each, meshes) for each in control_sets if each.surfaces]
+    noted = [replace(each, note=join_notes(each.note, note)) for each in found[:1]]
+    return [*noted, *found[1:]], groups
 
 
 def _rigid(group: RigidGroup, meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str) -> ControlSet:
-    surfaces = _shown_by(group.members, meshes)
+    surfaces = _shown_by(group.surfaces, meshes)
     return make_rigid_set(group, surfaces, [meshes[index] for index in surfaces], settings, kind)
 
 
@@ -157,9 +165,11 @@ def _check_independent(
     groups: Sequence[RigidGroup],
     by_lattice: dict[ObjectReference, tuple[int, ...]],
     meshes: Sequence[VisibleMesh],
+    deforming: set[str],
 ) -> None:
     """Refuse objects that would move in two ways, or change other objects."""
     in_groups = {name for group in groups for name in group.members}
+    following = {name for group in groups for name in group.followers}
     in_lattices: set[str] = set()
     for lattice, indices in by_lattice.items():
         for name in sorted({meshes[index].owner.name for index in indices}):
@@ -168,13 +178,13 @@ def _check_independent(
             if name in in_groups or any(m.reference.name == name and m.role in ("cage", "soft") for m in participants):
                 raise InputError(f'{name}: moves, and so does its lattice "{lattice.name}"; deselect one')
             in_lattices.add(name)
-    deforming = {name for each in participants if each.role != "rigid" for name in _deformed_with(each)}
     for name in sorted(deforming & in_groups):
         raise InputError(f"{name}: is deformed, and its parent moves; deselect one")
     check_dependents(
-        deforming | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices), evaluations_of(meshes)
-    )
-    check_instances(deforming | in_groups | in_lattices, meshes, groups)
+        deforming | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices - following),
+        evaluations_of(meshes),
+    )  # fmt: skip
+    check_instances(deforming | in_groups | in_lattices | following, meshes, groups)
     _check_children(deforming, in_groups, meshes)
 
 

@@ -10,6 +10,7 @@ from stiv.blender.controls.automatic_responders import find_automatic_responders
 from stiv.blender.controls.bone_set import find_posed_rigs
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_active, is_visible
+from stiv.blender.scene.followers import can_follow, reached
 from stiv.blender.scene.references import ObjectReference, type_name
 from stiv.blender.settings import EditSettings
 
@@ -40,7 +41,8 @@ def find_participants(context: bpy.types.Context, settings: EditSettings) -> lis
     participants = merge_participants(participants)
     if settings.responders != "selected" and context.mode == "OBJECT":
         participants += find_automatic_responders(objects, participants, settings)
-    if not any(each.selected for each in participants):
+    movable = [each.reference.find() for each in participants if each.selected]
+    if not movable or (context.mode == "OBJECT" and not moves_surface(context, movable)):
         raise nothing_movable([ob.name for ob in selected if settings.participates(settings.shown_by(ob.name))])
     return participants
 
@@ -91,7 +93,7 @@ def make_participant(ob: bpy.types.Object, selected: bool, settings: EditSetting
         return None
     deformation = _deformation_of(ob, role, settings)
     if deformation == "rigid":
-        return Participant(ObjectReference.of(ob), "rigid", selected) if may_have_surface(ob) else None
+        return Participant(ObjectReference.of(ob), "rigid", selected) if selected or may_have_surface(ob) else None
     if deformation in SOFT:
         return Participant(_mesh_reference(ob), "soft", selected)
     if deformation == "lattice":
@@ -148,6 +150,16 @@ def merge_participants(participants: list[Participant]) -> list[Participant]:
         known = merged.get(key)
         merged[key] = participant if known is None or not known.selected else known
     return list(merged.values())
+
+
+def moves_surface(context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> bool:
+    """Have any of the objects or their children a surface, or does a visible one follow them?"""
+    return any(map(may_have_surface, objects)) or not followed_objects(context).isdisjoint(objects)
+
+
+def followed_objects(context: bpy.types.Context) -> set[bpy.types.Object]:
+    """The objects on which the shape or the place of a visible mesh depends, and these meshes."""
+    return set(reached([ob for ob in context.scene.objects if can_follow(ob) and is_visible(context, ob)])[0].values())
 
 
 def may_have_surface(ob: bpy.types.Object) -> bool:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Deformation of objects that are moved, rotated or scaled below modifiers that refer to other objects, which stay.
+"""Deformation of objects that are moved, rotated or scaled below modifiers that refer to other objects, which stay;
+and of objects that follow moved ones.
 
-Blender evaluates these modifiers on hidden copies in other places.
+Blender evaluates them on hidden copies in other places.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -18,6 +19,7 @@ from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
+from stiv.blender.scene.followers import between
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, different_objects, kept_twin, kept_twins
@@ -33,10 +35,17 @@ class PlacedStack:
     """
 
     def __init__(
-        self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats, motion: PlacementMotion
+        self,
+        meshes: Sequence[VisibleMesh],
+        movers: Sequence[tuple[ObjectReference, ...]],
+        controls: Floats,
+        motion: PlacementMotion,
     ) -> None:
-        """bent: names of the objects whose shape depends on their place. controls: at the start, (2, 3)."""
-        self._placements = _Placements(meshes, bent, controls, motion)
+        """movers: for each mesh, the moved objects on whose place its shape depends, perhaps itself; () if it is rigid.
+
+        controls: at the start, (2, 3).
+        """
+        self._placements = _Placements(meshes, movers, controls, motion)
         jacobian = self._placements.jacobian()
         self.deformation = stiv.observed(self._placements.evaluate, jacobian, motion.rotation_rows)
 
@@ -47,28 +56,40 @@ class PlacedStack:
 
 @dataclass(frozen=True, eq=False)
 class _PlacedMesh:
-    """A mesh with its copy elsewhere."""
+    """A mesh with its copy, and copies of its movers, elsewhere."""
 
     reference: ObjectReference
     evaluation: str
-    start: Floats  # world matrix, (4, 4)
+    movers: tuple[ObjectReference, ...]
+    starts: tuple[Floats, ...]  # world matrices of the movers, (4, 4)
+
+    @classmethod
+    def of(cls, mesh: VisibleMesh, movers: tuple[ObjectReference, ...]) -> _PlacedMesh:
+        """Take the present places of the movers."""
+        starts = [mesh.matrix if each == mesh.owner else as_matrix(each.find().matrix_world) for each in movers]
+        return cls(mesh.owner, mesh.read_from, movers, tuple(starts))
 
     def evaluate(self, motion: Floats) -> tuple[EvaluatedStack, Floats]:
         """The evaluation after a motion, (4, 4), since the start, and its world matrix. Only inside `kept_twins`."""
-        twin = kept_twin(self, lambda: _PlacedTwin(self.reference, self.evaluation))
-        return twin.evaluate(motion @ self.start)
+        twin = kept_twin(self, lambda: _PlacedTwin(self.reference, self.evaluation, self.movers))
+        return twin.evaluate([motion @ start for start in self.starts])
 
 
 class _Placements:
     """The surfaces of a group. Apart from `PlacedStack`, as the core holds `evaluate`: no cycle of references."""
 
     def __init__(
-        self, meshes: Sequence[VisibleMesh], bent: Collection[str], controls: Floats, motion: PlacementMotion
+        self,
+        meshes: Sequence[VisibleMesh],
+        movers: Sequence[tuple[ObjectReference, ...]],
+        controls: Floats,
+        motion: PlacementMotion,
     ) -> None:
         self._motion, self._last = motion, controls
         self._rest = [each.world() for each in meshes]
         self._bent = [
-            _PlacedMesh(each.owner, each.read_from, each.matrix) if each.owner.name in bent else None for each in meshes
+            _PlacedMesh.of(each, movers_of_it) if movers_of_it else None
+            for each, movers_of_it in zip(meshes, movers, strict=True)
         ]
         with kept_twins():
             self._start = [None if each is None else each.evaluate(np.eye(4))[0] for each in self._bent]
@@ -107,21 +128,27 @@ class _Placements:
 
 
 class _PlacedTwin:
-    """A copy of an object, alone in a scene of its own."""
+    """A copy of an object, alone in a scene of its own, with copies of its movers and of those between."""
 
-    def __init__(self, reference: ObjectReference, evaluation: str) -> None:
+    def __init__(self, reference: ObjectReference, evaluation: str, movers: Sequence[ObjectReference]) -> None:
         ob, scene = reference.find(), bpy.context.scene
+        moved = [] if reference in movers else between(ob, {each.session_uid for each in movers})
         self._copies = EvaluationCopies(scene, evaluation)
         try:
-            self._copies.fill([ob, *different_objects(ob, scene, evaluation)], lambda other: other == ob)
+            copied = dict.fromkeys([ob, *different_objects(ob, scene, evaluation), *moved])
+            self._copies.fill([*copied], lambda other: other == ob)
         except BaseException:
             self._copies.remove()
             raise
         self._ob = self._copies.copy_of(reference)
+        numbers = {each.session_uid for each in copied}
+        self._movers = [self._copies.copy_of(each) if each.session_uid in numbers else None for each in movers]
 
-    def evaluate(self, world: Floats) -> tuple[EvaluatedStack, Floats]:
-        """The evaluation in a place given by a world matrix, (4, 4), and the evaluated matrix."""
-        self._ob.matrix_world = mathutils.Matrix(world.tolist())
+    def evaluate(self, places: Sequence[Floats]) -> tuple[EvaluatedStack, Floats]:
+        """The evaluation with the movers at world matrices, (4, 4) each, and the evaluated matrix."""
+        for mover, place in zip(self._movers, places, strict=True):
+            if mover is not None:
+                mover.matrix_world = mathutils.Matrix(place.tolist())
         graph = self._copies.depsgraph
         graph.update()
         shown = self._ob.evaluated_get(graph)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Groups of objects that move together rigidly: selected objects, their children, and objects tied to them."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -10,20 +10,28 @@ from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
 from stiv.blender.controls.rigid_trial import moves_as_a_whole
-from stiv.blender.scene.dependencies import Dependency, ancestors, dependencies
+from stiv.blender.scene.dependencies import Dependency, add_dependents, ancestors, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.followers import can_follow, used_names
 
 
 @dataclass(frozen=True)
 class RigidGroup:
     """`roots` are written; `members` (names, including the roots) move along.
 
-    bent: names of the members whose modifiers refer to objects that stay.
+    bent: names of the members whose modifiers refer to objects that stay. followers: names of meshes that do not belong
+    to the group, but whose shape or place depends on its members.
     """
 
     roots: tuple[Participant, ...]
     members: frozenset[str]
     bent: frozenset[str] = frozenset()
+    followers: frozenset[str] = frozenset()
+
+    @property
+    def surfaces(self) -> frozenset[str]:
+        """Names of the objects whose surfaces move."""
+        return self.members | self.followers
 
 
 def find_rigid_groups(participants: list[Participant], evaluations: Collection[str], kind: str) -> list[RigidGroup]:
@@ -57,28 +65,32 @@ def _with_bent(group: RigidGroup, evaluations: Collection[str], kind: str) -> Ri
 
 def _may_bend(dependency: Dependency) -> bool:
     """Can a copy in another place show the shape that the user has there? Not with constraints or instances."""
-    ob = bpy.data.objects[dependency.user]
-    has_nodes = any(isinstance(modifier, bpy.types.NodesModifier) for modifier in ob.modifiers)
-    shows_itself = ob.type == "MESH" and ob.instance_type == "NONE" and not has_nodes
-    return shows_itself and not dependency.through.startswith("constraint")
+    return can_follow(bpy.data.objects[dependency.user]) and not dependency.through.startswith("constraint")
 
 
-def add_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:
-    """Attach selected groups without a surface to the first selected group with one.
+def add_followers(
+    groups: Sequence[RigidGroup], shown: Collection[str], deforming: Collection[str], scene: bpy.types.Scene
+) -> list[RigidGroup]:
+    """Attach the meshes that follow selected groups, and merge groups that have followers in common.
 
-    shown: names of the objects with a surface. Groups without one cannot collide, and cannot be solved for.
+    shown: names of the objects with a surface. deforming: names of those that an edit deforms.
     """
-    solid = [group for group in groups if not group.members.isdisjoint(shown)]
-    first = next((group for group in solid if group.roots[0].selected), None)
-    if first is None:
-        return solid
-    passengers = [group for group in groups if group not in solid and group.roots[0].selected]
-    whole = RigidGroup(
-        tuple(root for group in (first, *passengers) for root in group.roots),
-        frozenset().union(*(group.members for group in (first, *passengers))),
-        frozenset().union(*(group.bent for group in (first, *passengers))),
-    )
-    return [whole if group is first else group for group in solid]
+    moving = frozenset().union(*(group.members for group in groups if group.roots[0].selected))
+    taken = {name for group in groups for name in group.members}.union(deforming)
+    users = used_names(scene)
+    found = (add_dependents(set(moving), users) & set(shown)) - taken
+    following = {name for name in found if can_follow(bpy.data.objects[name])}
+    if not following:
+        return list(groups)
+    result: list[RigidGroup] = []
+    for group in groups:
+        followers = add_dependents(set(group.members), users) & following if group.roots[0].selected else set()
+        group = replace(group, followers=frozenset(followers))
+        tied = [each for each in result if not each.followers.isdisjoint(group.followers)]
+        whole = join_groups([*tied, group])
+        result = [whole if each in tied[:1] else each for each in result if each not in tied[1:]]
+        result += [] if tied else [whole]
+    return result
 
 
 def check_dependents(moved: Iterable[str], names: Iterable[str], evaluations: Collection[str]) -> None:
@@ -143,12 +155,19 @@ def _merge_groups(groups: list[RigidGroup], dependency: Dependency) -> list[Rigi
     control_seams = [group for group in groups if dependency.user in group.members or dependency.used in group.members]
     if len(control_seams) < 2 or len({root.selected for group in control_seams for root in group.roots}) > 1:
         return groups
-    whole = RigidGroup(
-        tuple(root for group in control_seams for root in group.roots),
-        frozenset().union(*(group.members for group in control_seams)),
-    )
+    whole = join_groups(control_seams)
     return [
         whole if group is control_seams[0] else group
         for group in groups
         if group is control_seams[0] or group not in control_seams
     ]
+
+
+def join_groups(groups: Sequence[RigidGroup]) -> RigidGroup:
+    """One group of the objects of several."""
+    return RigidGroup(
+        tuple(root for group in groups for root in group.roots),
+        frozenset().union(*(group.members for group in groups)),
+        frozenset().union(*(group.bent for group in groups)),
+        frozenset().union(*(group.followers for group in groups)),
+    )

@@ -19,6 +19,7 @@ from stiv.blender.controls.rotations import nearest_rotation
 from stiv.blender.controls.transform_locks import can_rotate, find_free_directions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 
 
@@ -34,7 +35,8 @@ def make_rigid_set(
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
     motion = PlacementMotion(controls[0], controls[0], axes)
-    placed = PlacedStack(meshes, group.bent, controls, motion) if group.bent else None
+    movers = [_movers(each, group) for each in meshes]
+    placed = PlacedStack(meshes, movers, controls, motion) if any(movers) else None
     objects = [root.reference.find() for root in group.roots]
     free = None if scales else find_free_directions(objects, starts)
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
@@ -44,7 +46,7 @@ def make_rigid_set(
     if axes is not None:
         rule = ScaleGoal(**vars(rule), axes=axes)
     elif selected and kind == "rotate":
-        about = _about_pivots(rest, meshes, group, motion)
+        about = _about_pivots(rest, meshes, movers, motion)
         rule = RotationGoal(**vars(rule), about=about, free_axis=_turns_on_contact(settings))
     weight = settings.response_weight(True) if selected else 1.0
     max_weights = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
@@ -58,15 +60,22 @@ def make_rigid_set(
     )  # fmt: skip
 
 
+def _movers(mesh: VisibleMesh, group: RigidGroup) -> tuple[ObjectReference, ...]:
+    """The objects of the group on whose place the shape of a mesh depends: itself, or the roots; () for rigid ones."""
+    if mesh.owner.name in group.followers:
+        return tuple(root.reference for root in group.roots)
+    return (mesh.owner,) if mesh.owner.name in group.bent else ()
+
+
 def _about_pivots(
-    rest: Floats, meshes: Sequence[VisibleMesh], group: RigidGroup, motion: PlacementMotion
+    rest: Floats, meshes: Sequence[VisibleMesh], movers: Sequence[tuple[ObjectReference, ...]], motion: PlacementMotion
 ) -> PivotDeformation:
-    """Rotations about pivots, of the surface `rest`, (n, 3), or of its bent meshes as Blender evaluates them."""
+    """Rotations about pivots, of the surface `rest`, (n, 3), or of meshes as Blender evaluates them."""
 
     def make(pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
-        if not group.bent:
+        if not any(movers):
             return stiv.rigid(rest, pivot), None
-        stack = PlacedStack(meshes, group.bent, stiv.rigid_rest_controls(rest), replace(motion, pivot=pivot))
+        stack = PlacedStack(meshes, movers, stiv.rigid_rest_controls(rest), replace(motion, pivot=pivot))
         return stack.deformation, stack
 
     return PivotDeformation(make)

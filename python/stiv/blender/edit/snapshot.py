@@ -12,7 +12,7 @@ from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
-from stiv.blender.controls.participants import nothing_movable, nothing_selected
+from stiv.blender.controls.participants import moves_surface, nothing_movable, nothing_selected
 from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
@@ -69,7 +69,7 @@ def take_snapshot(
 
     adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface.
     """
-    if settings.guard == "auto" and any(map(_is_animated, participants)):
+    if settings.guard == "auto" and any(_is_animated(context, each) for each in participants):
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
     scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
@@ -93,11 +93,11 @@ def take_snapshot(
     return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried)
 
 
-def _is_animated(participant: Participant) -> bool:
+def _is_animated(context: bpy.types.Context, participant: Participant) -> bool:
     """Do keyframes determine what the edit changes?"""
     ob = participant.reference.find()
     if participant.role == "rigid":
-        return is_keyed(ob)
+        return is_keyed(ob) and moves_surface(context, [ob])
     return participant.role == "bones" and is_animated(ob)
 
 

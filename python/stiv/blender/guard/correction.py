@@ -8,11 +8,19 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
+from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.directions import ALL_FREE, NONE_FREE
+from stiv.blender.controls.editable import check_placement
 from stiv.blender.controls.joined_seams import seam_message
 from stiv.blender.controls.motion import Motion
-from stiv.blender.controls.participants import EDITABLE_TYPES, make_participant, may_have_surface, merge_participants
+from stiv.blender.controls.participants import (
+    EDITABLE_TYPES,
+    make_participant,
+    may_have_surface,
+    merge_participants,
+    moves_surface,
+)
 from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.blender_edit import BlenderEdit
@@ -77,9 +85,11 @@ def correct_after_tool_steps(
     Between steps, the scene shows the accepted state of the changed objects. Steps that are closed leave the tool's
     result; those ended by Left leave what the scene shows.
     """
-    chosen = [change for change in changes.changes if _participates(change, settings)]
+    chosen = [change for change in changes.changes if _participates(context, change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
-    deformers = tuple(change.reference.name for change in changes.changes if _may_deform_others(change))
+    deformers = tuple(
+        change.reference.name for change in changes.changes if change not in chosen and _may_deform_others(change)
+    )
     if not chosen:
         return ToolCorrection(False, names, deformers=deformers)
     wanted = read_state(context)
@@ -124,10 +134,23 @@ class Outcome:
     cut: bool
 
 
-def _participates(change: Change, settings: EditSettings) -> bool:
-    """Can the change cause intersections? Cameras and lights cannot."""
-    name = change.reference.name
-    return settings.participates(settings.shown_by(name)) and may_have_surface(change.reference.find())
+def _participates(context: bpy.types.Context, change: Change, settings: EditSettings) -> bool:
+    """Can the change cause intersections, and an edit correct them? Cameras and lights cannot."""
+    name, ob = change.reference.name, change.reference.find()
+    if not settings.participates(settings.shown_by(name)):
+        return False
+    return may_have_surface(ob) or _moves_followers(context, ob)
+
+
+def _moves_followers(context: bpy.types.Context, ob: bpy.types.Object) -> bool:
+    """Can an object without a surface be moved so that visible ones follow it?"""
+    if ob.type in WITHOUT_EFFECT or not is_visible(context, ob) or not moves_surface(context, [ob]):
+        return False
+    try:
+        check_placement(ob, may_be_keyed=True)
+    except InputError:
+        return False
+    return True
 
 
 def _may_deform_others(change: Change) -> bool:

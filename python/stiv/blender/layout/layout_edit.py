@@ -62,6 +62,9 @@ class LayoutEdit:
         self._participants = [Participant(ObjectReference.of(ob), "rigid", True) for ob in movable]
         self._scales: dict[str, tuple[float, ...]] = {}
         self._edit = BlenderEdit.begin_with(context, self._settings, "move", self._participants)
+        for each in self._edit.control_sets:
+            if each.placed is not None:
+                raise InputError(f"{each.names[0]}: is tied to other objects; use Collision Move")
         self.assembly = self._edit.assembly
         self.scene = _rigid_scene(self._edit, self._settings, ground)
 

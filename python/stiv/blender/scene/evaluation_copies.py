@@ -18,8 +18,8 @@ import bpy
 from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
+from stiv.blender.scene.followers import data_of, driving, find_driver_targets
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.rig_followers import data_of, driving, find_driver_targets
 from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, forget_keyframes
 
 NAME = "STIV Evaluation"

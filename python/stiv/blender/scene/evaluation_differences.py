@@ -19,7 +19,7 @@ from stiv.blender.scene.evaluations import (
     rendered_objects,
     signature,
 )
-from stiv.blender.scene.rig_followers import driving_objects, posing_objects
+from stiv.blender.scene.followers import driving_objects, posing_objects
 
 # Evaluated alike in both modes if Edit Mode shows them. Blender may skip other types in Edit Mode.
 EDIT_MODE_TYPES = frozenset(

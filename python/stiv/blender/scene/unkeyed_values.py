@@ -11,7 +11,7 @@ import bpy
 
 from stiv.blender.scene.animation_curves import is_animated, keyed_paths
 from stiv.blender.scene.dependencies import add_dependents
-from stiv.blender.scene.rig_followers import data_of, driving, used_objects
+from stiv.blender.scene.followers import data_of, driving, reached
 
 
 class UnkeyedValues:
@@ -23,7 +23,7 @@ class UnkeyedValues:
     def __init__(self) -> None:
         """Read the values."""
         shared = list(_shared_blocks())
-        read, _ = _reached([ob for block in shared for ob in driving(block)])
+        read, _ = reached([ob for block in shared for ob in driving(block)])
         blocks = [*shared, *(block for ob in read.values() for block in (ob, *data_of(ob)))]
         animated = [block for block in blocks if block.library is None and is_animated(block)]
         self._values = [(block, path, value) for block in animated for path, value in _keyed_values(block)]
@@ -75,27 +75,11 @@ def _find(block: bpy.types.ID, path: str) -> tuple[Any, str, bool]:
 
 def animated_below(objects: Sequence[bpy.types.Object]) -> list[bpy.types.Object]:
     """Animated objects on which these depend, and those between."""
-    found, used_by = _reached(objects)
+    found, used_by = reached(objects)
     given = {ob.session_uid for ob in objects}
     animated = {number for number, ob in found.items() if any(map(is_animated, (ob, *data_of(ob))))}
     chosen = add_dependents(animated, used_by) - given
     return [ob for number, ob in found.items() if number in chosen]
-
-
-def _reached(objects: Sequence[bpy.types.Object]) -> tuple[dict[int, bpy.types.Object], dict[int, set[int]]]:
-    """These objects and all on which they depend, by number, and the numbers of those that each uses."""
-    found: dict[int, bpy.types.Object] = {}
-    used_by: dict[int, set[int]] = {}
-    waiting = list(objects)
-    while waiting:
-        user = waiting.pop()
-        if user.session_uid not in found:
-            instanced = () if user.instance_collection is None else user.instance_collection.all_objects
-            used = [*used_objects(user), *instanced]
-            found[user.session_uid] = user
-            used_by[user.session_uid] = {each.session_uid for each in used}
-            waiting += used
-    return found, used_by
 
 
 def forget_keyframes(copy: bpy.types.ID) -> None:
