@@ -164,6 +164,10 @@ class FakeEdit:
         self.shown = self.passed = self.accepted
         return None
 
+    def write_steps(self) -> "Steps[Any]":
+        yield from self._delayed("write")
+        return self.write()
+
     def restore(self) -> None:
         self._called("restore")
         self.accepted = self.shown = 0.0

@@ -2,7 +2,6 @@
 """Simplified Chinese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "is tied to other objects; use Collision Move": "与其他物体相关联；请使用碰撞移动",
     "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 triangle has no area": "1 个三角形没有面积",
@@ -70,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "形态键是关联的；请创建库重写",
     "its shape keys hide edits; apply all shape keys": "其形态键会掩盖编辑；请应用所有形态键",
     "its structure has changed; use Undo instead": "其结构已改变；请改用撤销",
+    "its shape changes as it moves; use Collision Move": "移动时形状会改变；请使用碰撞移动",
     "its topology changes as it moves; apply its modifiers": "移动时拓扑会改变；请应用其修改器",
     "its transform is animated; clear the animation": "其变换有动画；请清除动画",
     "its transform is driven; delete the drivers": "其变换由驱动器控制；请删除驱动器",

@@ -2,7 +2,6 @@
 """German messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "is tied to other objects; use Collision Move": "ist an andere Objekte gebunden; „Bewegen mit Kollision“ nutzen",
     "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 triangle has no area": "1 Dreieck hat keine Fläche",
@@ -70,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "die Formschlüssel sind verknüpft; eine Bibliotheksüberschreibung anlegen",
     "its shape keys hide edits; apply all shape keys": "Formschlüssel verdecken Änderungen; alle anwenden",
     "its structure has changed; use Undo instead": "die Struktur hat sich geändert; stattdessen Rückgängig verwenden",
+    "its shape changes as it moves; use Collision Move": "seine Form ändert sich bei Bewegung; „Bewegen mit Kollision“ nutzen",
     "its topology changes as it moves; apply its modifiers": "seine Topologie ändert sich beim Bewegen; die Modifikatoren anwenden",
     "its transform is animated; clear the animation": "die Transformation ist animiert; Animation löschen",
     "its transform is driven; delete the drivers": "die Transformation hat Treiber; Treiber löschen",

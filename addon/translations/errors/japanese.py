@@ -2,7 +2,6 @@
 """Japanese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "is tied to other objects; use Collision Move": "他のオブジェクトに結び付いています。衝突判定付き移動を使ってください",
     "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 triangle has no area": "面積のない三角形が 1 個あります",
@@ -70,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "シェイプキーがリンクされています。ライブラリオーバーライドを作成してください",
     "its shape keys hide edits; apply all shape keys": "シェイプキーのため編集が見えません。すべて適用してください",
     "its structure has changed; use Undo instead": "構造が変わりました。代わりに「元に戻す」を使ってください",
+    "its shape changes as it moves; use Collision Move": "動かすと形が変わります。衝突判定付き移動を使ってください",
     "its topology changes as it moves; apply its modifiers": "移動するとトポロジーが変わります。モディファイアーを適用してください",
     "its transform is animated; clear the animation": "トランスフォームがアニメーションしています。アニメーションをクリアしてください",
     "its transform is driven; delete the drivers": "トランスフォームがドライバーで制御されています。ドライバーを削除してください",

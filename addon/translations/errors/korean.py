@@ -2,7 +2,6 @@
 """Korean messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "is tied to other objects; use Collision Move": "다른 오브젝트에 묶여 있음; 충돌 이동을 사용하세요",
     "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 triangle has no area": "넓이가 없는 삼각형 1개",
@@ -70,6 +69,7 @@ MESSAGES = {
     "its shape keys are linked; make a library override": "셰이프 키가 링크됨; 라이브러리 오버라이드 만들기",
     "its shape keys hide edits; apply all shape keys": "셰이프 키가 편집을 가림; 모두 적용하세요",
     "its structure has changed; use Undo instead": "구조가 바뀜; 대신 실행 취소를 사용하세요",
+    "its shape changes as it moves; use Collision Move": "움직이면 형태가 바뀜; 충돌 이동을 사용하세요",
     "its topology changes as it moves; apply its modifiers": "이동하면 토폴로지가 바뀝니다. 모디파이어를 적용하세요",
     "its transform is animated; clear the animation": "변환이 애니메이션됨; 애니메이션을 지우세요",
     "its transform is driven; delete the drivers": "변환이 드라이버로 제어됨; 드라이버를 삭제하세요",

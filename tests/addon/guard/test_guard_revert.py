@@ -107,12 +107,13 @@ def test_a_mesh_that_cannot_be_corrected_is_named_counted_and_restored() -> None
 
 
 def test_a_scene_with_a_moved_rig_is_not_clear_without_a_test() -> None:
-    """The object Rig has no surface; its effect on the box was once not tested."""
+    """The object Rig has no surface; its effect on the box was once not tested. A constraint prevents corrections."""
 
     def scale_by_rig() -> None:
         rig_box()
         rig = bpy.data.objects["Rig"]
         rig.location.z, rig.pose.bones["Bone"].scale = 0.0, (2.0, 2.0, 2.0)
+        rig.constraints.new("LIMIT_SCALE")
 
     watched_again(scale_by_rig)
     bpy.data.objects["Rig"].location.x = -1.5

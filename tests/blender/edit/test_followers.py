@@ -8,7 +8,19 @@ import bpy
 import mathutils
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_lattice, add_modifier, evaluated, select, shift, snapshot, stretch, turn
+from building import (
+    add,
+    add_cube,
+    add_grid,
+    add_lattice,
+    add_modifier,
+    evaluated,
+    select,
+    shift,
+    snapshot,
+    stretch,
+    turn,
+)
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene, guard_result
 from stiv.blender.guard.accepted_scene import AcceptedScene
@@ -104,7 +116,7 @@ def lowest(ob: Any) -> float:
 
 
 def moved_by_blender(mover: Any, target: Any, matrix: np.ndarray) -> np.ndarray:
-    """What Blender shows once the mover itself has moved; the mover returns."""
+    """The surface that Blender shows once the mover itself has moved; the mover returns."""
     before = mover.matrix_world.copy()
     mover.matrix_world = mathutils.Matrix((matrix @ np.array(before)).tolist())
     shown = evaluated(target)
@@ -115,7 +127,7 @@ def moved_by_blender(mover: Any, target: Any, matrix: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("make", SCENES)
 @pytest.mark.parametrize("kind", ["move", "rotate", "scale"])
-def test_what_follows_moves_as_in_blender_where_it_is_free(make: Make, kind: str) -> None:
+def test_followers_move_as_in_blender_where_they_are_free(make: Make, kind: str) -> None:
     mover, target = make()
     select(mover)
     place = tuple(mover.matrix_world.translation)
@@ -130,7 +142,7 @@ def test_what_follows_moves_as_in_blender_where_it_is_free(make: Make, kind: str
 
 
 @pytest.mark.parametrize("make", SCENES)
-def test_what_follows_stops_at_an_obstacle(make: Make) -> None:
+def test_followers_stop_at_an_obstacle(make: Make) -> None:
     mover, target = make()
     select(mover)
     goal = GOALS.get(make, shift(z=-2.5))
@@ -168,7 +180,7 @@ def test_a_mesh_and_its_hook_move_as_one() -> None:
     assert empty.location.z - 1 == pytest.approx(target.location.z - 2, abs=1e-6) and empty.location.x == 1
 
 
-def test_the_guard_corrects_what_follows() -> None:
+def test_the_guard_corrects_followers() -> None:
     empty, target = below_hook()
     settings = EditSettings()
     accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, settings))

@@ -175,7 +175,7 @@ def test_values_of_materials_and_nodes_that_are_not_keyed_yet_stay(guard: str) -
     assert edit.apply(shift(z=0.1)).status == "reached" and edit.write().passed
     edit.restore()
     assert material.roughness == pytest.approx(0.9) and tuple(offset.default_value) == (0, 0, 0.5)
-    assert material["A \"name\""] == 0.3 and tuple(material["Three"]) == (1.0, 2.0, 3.0) and material["Whole"] == 7
+    assert material['A "name"'] == 0.3 and tuple(material["Three"]) == (1.0, 2.0, 3.0) and material["Whole"] == 7
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
     assert evaluated(cube)[:, 2].max() == pytest.approx(1.5)

@@ -73,7 +73,7 @@ def test_a_cube_whose_topology_changes_on_the_way_is_named() -> None:
     for ob in (cut, other):
         ob.rotation_euler = (0.2, 0.3, 0.1)
     select(cut)
-    with pytest.raises(stiv.InputError, match="Cut: its topology changes as it moves; apply its modifiers"):
+    with pytest.raises(stiv.InputError, match="Cut: its shape changes as it moves; use Collision Move"):
         push_apart(bpy.context, EditSettings(separation=2.5))
     assert tuple(cut.location) == (0, 0, 0)
 

@@ -39,7 +39,7 @@ def leave_held_passengers(
 
 
 def _moves_along(ob: bpy.types.Object, first: bpy.types.Object, kind: str) -> bool:
-    """Can the object take part in any motion of this kind? `first` is the object with which it is scaled."""
+    """Can the object participate in any motion of this kind? `first` is the object with which it is scaled."""
     try:
         check_placement(ob, may_be_keyed=True)
         for child in ob.children_recursive:

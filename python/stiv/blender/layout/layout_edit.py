@@ -25,6 +25,7 @@ from stiv.blender.settings import EditSettings
 
 GROUND = "z = 0"
 GROUND_SIZE = 100.0  # times the extent of the scene
+SAME_SHAPE = 1e-5  # greatest deviation from a rigid motion, in sizes of the surface
 
 
 class LayoutEdit:
@@ -63,8 +64,8 @@ class LayoutEdit:
         self._scales: dict[str, tuple[float, ...]] = {}
         self._edit = BlenderEdit.begin_with(context, self._settings, "move", self._participants)
         for each in self._edit.control_sets:
-            if each.placed is not None:
-                raise InputError(f"{each.names[0]}: is tied to other objects; use Collision Move")
+            if each.placed is not None and not _keeps_shape(each):
+                raise InputError(f"{each.names[0]}: its shape changes as it moves; use Collision Move")
         self.assembly = self._edit.assembly
         self.scene = _rigid_scene(self._edit, self._settings, ground)
 
@@ -111,6 +112,18 @@ class LayoutEdit:
         for name, scale in self._scales.items():
             bpy.data.objects[name].scale = scale
         bpy.context.view_layer.update()
+
+
+def _keeps_shape(control_set: ControlSet) -> bool:
+    """Does Blender show the same shape in another place, though modifiers refer to objects that stay?"""
+    start = control_set.deformation.surface(control_set.controls)
+    size = float(np.ptp(start, axis=0).max(initial=0.0)) or 1.0
+    moved = control_set.controls + np.array([[0.4 * size, -0.3 * size, 0.2 * size], [0.3, -0.2, 0.4]])
+    try:
+        shown = control_set.deformation.surface(moved)
+    except stiv.InfeasibleError:
+        return False
+    return bool(np.abs(shown - stiv.rigid(start).surface(moved)).max(initial=0.0) <= SAME_SHAPE * size)
 
 
 def _rigid_scene(edit: BlenderEdit, settings: EditSettings, ground: bool) -> RigidScene:
