@@ -92,6 +92,10 @@ class RecordingEdit:
         obj.matrix_world = mathutils.Matrix(self.matrix @ np.array(self.before))
         return SimpleNamespace(passed=True, message="", result=None)
 
+    def write_steps(self) -> Any:
+        yield None
+        return self.write()
+
     def restore(self) -> None:
         bpy.data.objects[self.name].matrix_world = self.before
 
