@@ -278,6 +278,17 @@ def test_errors_name_the_object_and_change_nothing() -> None:
     assert snapshot() == before
 
 
+def test_a_repair_names_the_object_whose_topology_changes() -> None:
+    ball = add_ball("Ball", levels=2)
+    add_modifier(ball, "EDGE_SPLIT", split_angle=0.4)  # cuts other edges of the contracted shape
+    add_cube("Block", location=(1, 0, 0.1), size=0.5)
+    select(ball)
+    before = snapshot()
+    with pytest.raises(stiv.InputError, match="^Ball: its topology changes as it moves; apply its modifiers$"):
+        repair_scene(bpy.context)
+    assert snapshot() == before
+
+
 def test_an_intersecting_repair_is_undone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Blender's evaluation decides: here it rejects the written repair."""
     tube = add_tube()

@@ -76,6 +76,11 @@ class ObservedStack:
         return self._held.leaders
 
     @property
+    def has_surface(self) -> bool:
+        """Had the last evaluation the topology of the start?"""
+        return self._blocks.have_surface
+
+    @property
     def followed(self) -> stiv.Weights:
         """The controls that each vertex of the surfaces follows, (n, m), with equal weights."""
         anchors = np.concatenate([block.anchors for block in self._blocks.blocks])
@@ -110,7 +115,7 @@ class ObservedStack:
         return stiv.linear(stack_weights(rows))
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Blocks:
     """The distinct blocks of all surfaces.
 
@@ -118,6 +123,7 @@ class _Blocks:
     """
 
     blocks: list[StackBlock]
+    have_surface: bool = True  #: at the last evaluation
 
     @property
     def are_exact(self) -> bool:
@@ -130,7 +136,8 @@ class _Blocks:
             inputs = np.split(positions, len(self.blocks))
             found = [block.evaluate(each) for block, each in zip(self.blocks, inputs, strict=True)]
         feasible = [each for each in found if each is not None]
-        return np.concatenate(feasible) if len(feasible) == len(found) else None
+        self.have_surface = len(feasible) == len(found)
+        return np.concatenate(feasible) if self.have_surface else None
 
     def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]] | stiv.Weights:
         """The rows of all blocks; weights if x, y and z act alike in all of them."""

@@ -104,11 +104,12 @@ class BlenderContraction:
 
     def _until_free(self) -> Steps[stiv.ContractionResult]:
         options = stiv.ContractionOptions(smoothing=self._settings.smoothing, max_steps=self._settings.steps)
-        found: stiv.ContractionResult = yield Call(
-            stiv.contract, stiv.start_contract, self._snapshot.assembly.surface, self._snapshot.start, options,
-            deformation=self._snapshot.deformation, cage=self._snapshot.cage, moves=self._snapshot.moves,
-            storage=self._snapshot.frames, threads=self._settings.edit.threads,
-        )  # fmt: skip
+        with self._snapshot.naming_topology_changes():
+            found: stiv.ContractionResult = yield Call(
+                stiv.contract, stiv.start_contract, self._snapshot.assembly.surface, self._snapshot.start, options,
+                deformation=self._snapshot.deformation, cage=self._snapshot.cage, moves=self._snapshot.moves,
+                storage=self._snapshot.frames, threads=self._settings.edit.threads,
+            )  # fmt: skip
         return found
 
 

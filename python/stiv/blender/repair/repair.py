@@ -77,10 +77,11 @@ class BlenderRepair:
         options = stiv.RepairOptions(
             edit=self._snapshot.edit_options(), moves=self._snapshot.moves, max_deviation=self._settings.max_deviation
         )
-        self._result = yield Call(
-            stiv.repair, stiv.start_repair, self._snapshot.assembly.surface, self._snapshot.start, options,
-            deformation=self._snapshot.deformation, cage=self._snapshot.cage,
-        )  # fmt: skip
+        with self._snapshot.naming_topology_changes():
+            self._result = yield Call(
+                stiv.repair, stiv.start_repair, self._snapshot.assembly.surface, self._snapshot.start, options,
+                deformation=self._snapshot.deformation, cage=self._snapshot.cage,
+            )  # fmt: skip
 
     def write(self) -> ReshapeReport | None:
         """Write the result and test Blender's evaluation; None: `solve` again, because Blender flipped triangles.

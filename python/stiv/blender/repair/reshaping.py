@@ -6,7 +6,8 @@ Reading and writing require Blender's main thread; solving does not access Blend
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -165,6 +166,17 @@ class ReshapeSnapshot:
     def restore(self) -> None:
         """Restore everything exactly."""
         restore_controls(self.control_sets)
+
+    @contextmanager
+    def naming_topology_changes(self) -> Iterator[None]:
+        """Name the object whose modifiers give a solve no surface of the topology at the start. Raises InputError."""
+        try:
+            yield
+        except stiv.InfeasibleError as error:
+            stacks = [(each, each.observed) for each in self.control_sets if each.observed is not None]
+            changed = next((each for each, stack in stacks if not stack.has_surface), self.control_sets[0])
+            name = _cage_writer_of(changed).reference.name
+            raise InputError(f"{name}: its topology changes as it moves; apply its modifiers") from error
 
 
 def take_reshape_snapshot(
