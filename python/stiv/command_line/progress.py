@@ -17,7 +17,9 @@ def progress_bar(title: str, total: int) -> Iterator[Callable[..., None]]:
         yield lambda note, steps=1: None
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, TextColumn("{task.fields[note]}"), console=Console(stderr=True)) as progress:
+    console = Console(stderr=True)
+    note = TextColumn("{task.fields[note]}")
+    with Progress(*columns, note, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task(title, total=total, note="")
         yield lambda note, steps=1: progress.update(task, advance=steps, note=note)
 
@@ -32,6 +34,7 @@ def fraction_bar(title: str) -> Iterator[Callable[[str, float], None]]:
         yield lambda phase, fraction: None
         return
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TextColumn("{task.fields[note]}"))
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task(title, total=1.0, note="")
         yield lambda phase, fraction: progress.update(task, completed=fraction, note=phase)
