@@ -51,7 +51,7 @@ class EditResult:
     rounds: int  #: detections followed by a response
     events: Events  #: contacts of the last round with contacts
     patches: int  #: number of contact patches in that round
-    blocking: tuple[str, ...]  #: names of the bodies in contact when blocked
+    blocking: tuple[str, ...]  #: names of the bodies in contact when blocked, each once
     timings: dict[str, float]  #: seconds of each stage of the pipeline, and "total"
     #: counts of work, independent of the machine; "infeasible" counts goals and candidates without a surface
     counters: dict[str, int]
@@ -64,7 +64,7 @@ def result_of(values: dict[str, Any], surface: Surface, obstacles: Sequence[Obst
     """Return the result of an edit from the values of the core."""
     names = [*(body.name for body in surface.bodies), *(each.name for each in obstacles)]
     values["events"] = Events(*values["events"])
-    values["blocking"] = tuple(names[body] for body in values["blocking"])
+    values["blocking"] = tuple(dict.fromkeys(names[body] for body in values["blocking"]))
     return EditResult(rounds=values["counters"]["rounds"], **values)
 
 

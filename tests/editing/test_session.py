@@ -116,6 +116,16 @@ def test_all_pinned_is_blocked_and_names_the_bodies(edit: families.Edit) -> None
     assert len(stiv.find_intersections(result.surface, edit.surface)) == 0
 
 
+def test_bodies_of_one_name_are_named_once() -> None:
+    sheet = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], float)
+    start = np.vstack([sheet, sheet + (0, 0, 0.3)])
+    bodies = [stiv.Body("Cube"), stiv.Body("Cube")]
+    surface = stiv.Surface([[0, 1, 2], [3, 4, 5]], 6, vertex_body=[0, 0, 0, 1, 1, 1], bodies=bodies)
+    goal = start - np.repeat([0, 0.5], 3)[:, None] * (0, 0, 1)
+    result = stiv.edit(surface, stiv.identity(6), start, goal, stiv.EditOptions(weights=np.zeros(6)))
+    assert (result.status, result.blocking) == ("blocked", ("Cube",))
+
+
 def test_restore_undoes_edits(session: stiv.EditSession, edit: families.Edit) -> None:
     start = session.controls
     session.edit(edit.goal)
