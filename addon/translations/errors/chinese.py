@@ -134,6 +134,7 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "仅在物体模式中可用；请离开当前模式",
     "{} changed its number of points": "{} 的点数已改变",
     "{} changed its number of vertices": "{} 的顶点数已改变",
+    "{} cuts itself in {}, {}": "{} 与自身相交 ({})，{}",
     "{} cuts {} in {}, {}": "{} 与 {} 相交 ({})，{}",
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",

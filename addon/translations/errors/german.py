@@ -134,6 +134,7 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "geht nur im Objektmodus; den jetzigen Modus verlassen",
     "{} changed its number of points": "{}: die Zahl der Punkte hat sich geändert",
     "{} changed its number of vertices": "{}: die Zahl der Vertices hat sich geändert",
+    "{} cuts itself in {}, {}": "{} schneidet sich selbst in {}, {}",
     "{} cuts {} in {}, {}": "{} schneidet {} in {}, {}",
     "{} cuts {}, {} faces, may only part": "{} schneidet {}, {} Flächen, dürfen sich nur trennen",
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",

@@ -134,6 +134,7 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "オブジェクトモードでのみ使えます。現在のモードを終了してください",
     "{} changed its number of points": "{} のポイント数が変わりました",
     "{} changed its number of vertices": "{} の頂点数が変わりました",
+    "{} cuts itself in {}, {}": "{} が自己交差 ({})、{}",
     "{} cuts {} in {}, {}": "{} と {} が交差 ({})、{}",
     "{} cuts {}, {} faces, may only part": "{} と {} が交差、面 {}。離れることだけできます",
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",

@@ -134,6 +134,7 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "오브젝트 모드에서 작동함; 현재 모드를 나가세요",
     "{} changed its number of points": "{}의 점 개수가 바뀜",
     "{} changed its number of vertices": "{}의 버텍스 개수가 바뀜",
+    "{} cuts itself in {}, {}": "{} 자기 교차 ({}), {}",
     "{} cuts {} in {}, {}": "{} 교차 {} ({}), {}",
     "{} cuts {}, {} faces, may only part": "{} 교차 {}, 면 {}개, 떨어질 수만 있음",
     "{} cuts {}, {} faces{}": "{} 교차 {}, 면 {}개{}",

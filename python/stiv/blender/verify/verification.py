@@ -270,4 +270,6 @@ def _intersection_message(pairs: tuple[FacePair, ...]) -> str:
     shown_in = {VIEWPORT: "Object Mode", RENDER: "the render"}.get(second.evaluation, "the viewport")
     faces = count_faces(pairs)
     counted = "1 face" if faces == 1 else f"{faces:,} faces"
+    if first.object == second.object:
+        return f"{first.object} cuts itself in {shown_in}, {counted}"
     return f"{first.object} cuts {second.object} in {shown_in}, {counted}"
