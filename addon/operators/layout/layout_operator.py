@@ -10,6 +10,7 @@ import bpy
 from bpy.props import FloatProperty
 
 from ... import stiv_blender
+from ...intersection_texts import brief
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..repair.reshape import ReshapeOperator
@@ -85,7 +86,7 @@ class LayoutOperator(ReshapeOperator):
         if report.status == "budget":
             self.report({"ERROR"}, text)
             return {"CANCELLED"}
-        self.report({"WARNING"} if report.left else {"INFO"}, text)
+        self.report({"WARNING"} if report.left else {"INFO"}, brief(text))
         return {"FINISHED"} if report.changed else {"CANCELLED"}
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Drop, Settle into Contact, Place, Push Apart and Fit into as a script calls them, with the core."""
 
+import ctypes
 import json
 from typing import Any
 
@@ -58,6 +59,17 @@ def test_an_object_that_stays_is_named_with_the_way_out() -> None:
     bpy.ops.stiv.settle_contact()
     assert bpy.context.window_manager.stiv_check.summary == "Suzanne: nothing near; raise Max Distance"
     assert bpy.ops.stiv.drop(ground=True) == {"FINISHED"}
+
+
+def test_a_message_fits_the_status_bar_and_the_tab_shows_all(capfd: pytest.CaptureFixture[str]) -> None:
+    names = ["A prop with a rather long name", "Another prop with a long name"]
+    for number, name in enumerate(names):
+        add_ball(name, (0, 30 + 4 * number, 4))
+    bpy.ops.stiv.drop()
+    ctypes.CDLL(None).fflush(None)  # Blender prints reports
+    reported = next(line for line in capfd.readouterr().out.splitlines() if line.startswith("Warning: "))
+    assert reported == f"Warning: {names[0]}: nothing below; add a floor"
+    assert all(name in bpy.context.window_manager.stiv_check.summary for name in names)
 
 
 def test_the_view_is_straight_down_without_a_window() -> None:
