@@ -66,6 +66,7 @@ MESSAGES = {
     "its parent shears it; apply its transform": "被父级切变；请应用其变换",
     "its scale is locked; unlock it": "其缩放已锁定；请解锁",
     "its scale is zero; change it": "其缩放为零；请更改",
+    "its shape changes as it moves; apply its modifiers": "移动时形状会改变；请应用其修改器",
     "its shape keys are absolute; turn on Relative": "其形态键为绝对；请开启“相对”",
     "its shape keys are linked; make a library override": "形态键是关联的；请创建库重写",
     "its shape keys hide edits; apply all shape keys": "其形态键会掩盖编辑；请应用所有形态键",

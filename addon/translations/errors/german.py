@@ -66,6 +66,7 @@ MESSAGES = {
     "its parent shears it; apply its transform": "das Elternobjekt schert es; die Transformation anwenden",
     "its scale is locked; unlock it": "die Skalierung ist gesperrt; entsperren",
     "its scale is zero; change it": "die Skalierung ist null; ändern",
+    "its shape changes as it moves; apply its modifiers": "seine Form ändert sich beim Bewegen; die Modifikatoren anwenden",
     "its shape keys are absolute; turn on Relative": "die Formschlüssel sind absolut; Relativ einschalten",
     "its shape keys are linked; make a library override": "die Formschlüssel sind verknüpft; eine Bibliotheksüberschreibung anlegen",
     "its shape keys hide edits; apply all shape keys": "Formschlüssel verdecken Änderungen; alle anwenden",

@@ -66,6 +66,7 @@ MESSAGES = {
     "its parent shears it; apply its transform": "親によりせん断されています。トランスフォームを適用してください",
     "its scale is locked; unlock it": "スケールがロックされています。解除してください",
     "its scale is zero; change it": "スケールが 0 です。変更してください",
+    "its shape changes as it moves; apply its modifiers": "移動すると形状が変わります。モディファイアーを適用してください",
     "its shape keys are absolute; turn on Relative": "シェイプキーが絶対です。「相対」をオンにしてください",
     "its shape keys are linked; make a library override": "シェイプキーがリンクされています。ライブラリオーバーライドを作成してください",
     "its shape keys hide edits; apply all shape keys": "シェイプキーのため編集が見えません。すべて適用してください",

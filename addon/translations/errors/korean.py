@@ -66,6 +66,7 @@ MESSAGES = {
     "its parent shears it; apply its transform": "부모가 기울임; 변환을 적용하세요",
     "its scale is locked; unlock it": "축척이 잠겨 있음; 잠금을 해제하세요",
     "its scale is zero; change it": "축척이 0임; 바꾸세요",
+    "its shape changes as it moves; apply its modifiers": "이동하면 형태가 바뀝니다. 모디파이어를 적용하세요",
     "its shape keys are absolute; turn on Relative": "셰이프 키가 절대임; 상대를 켜세요",
     "its shape keys are linked; make a library override": "셰이프 키가 링크됨; 라이브러리 오버라이드 만들기",
     "its shape keys hide edits; apply all shape keys": "셰이프 키가 편집을 가림; 모두 적용하세요",

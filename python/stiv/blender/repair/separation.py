@@ -81,7 +81,11 @@ def _write(
     left = find_face_pairs(surfaces, read_shown(context, surfaces), settings.threads)
     if left:
         edit.restore()
-        raise InputError(f"{left[0].first.object}: still intersects {left[0].second.object}; clear its locks")
+        first, second = left[0].first.object, left[0].second.object
+        name, other = (first, second) if first in edit.moving else (second, first)
+        if not any(any(context.scene.objects[each].lock_location) for each in edit.moving):
+            raise InputError(f"{name}: its shape changes as it moves; apply its modifiers")
+        raise InputError(f"{name}: still intersects {other}; clear its locks")
 
 
 def _against_others(assembly: Assembly, moving: frozenset[str], settings: EditSettings) -> Assembly:
