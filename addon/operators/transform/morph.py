@@ -13,7 +13,7 @@ from ...modal.header_texts import result_text
 from ...native_module import NeedsNativeModule
 from ...properties import StivKeyValue
 from ...scene.edit_settings import edit_settings
-from ...translations import translate
+from ...translations import translate, translate_error
 from ..reports import report_error, say
 
 
@@ -67,6 +67,8 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         values = {key: value for (_, key), value in found.values.items()}
         described = {"status": found.status, "blocking": found.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
+        for note in found.start_notes:
+            self.report({"WARNING"}, translate_error(note))
         if text := result_text(found.status, found.blocking, translate):
             say(self, "INFO", text)
         return {"FINISHED"}

@@ -23,11 +23,13 @@ class MorphReport:
         status: of stiv.EditResult.
         values: (object, key) and its value now, of each slider that was read.
         blocking: names of the objects in contact when blocked.
+        start_notes: about objects that intersect themselves at the start, and about excluded pairs.
     """
 
     status: str
     values: Mapping[tuple[str, str], float]
     blocking: tuple[str, ...] = ()
+    start_notes: tuple[str, ...] = ()
 
 
 def morph(
@@ -79,4 +81,4 @@ def _solve(edit: MorphEdit, goals: Floats) -> MorphReport:
     if np.array_equal(edit.values, edit.start) and status != "unchanged":
         status = "blocked"
     values = dict(zip([(each.owner.name, each.key) for each in edit.sliders], edit.values.tolist(), strict=True))
-    return MorphReport(status, values, result.blocking or settled.blocking)
+    return MorphReport(status, values, result.blocking or settled.blocking, edit.start_notes)

@@ -15,7 +15,12 @@ from stiv.blender.edit.sessions import ObjectsIntersectError, body_separations
 from stiv.blender.morphing.key_sliders import KeySlider, find_sliders
 from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.arrays import Flags, Floats
-from stiv.blender.scene.exclusions import exclude_undecided, excluded_bodies, find_excluded_triangles
+from stiv.blender.scene.exclusions import (
+    exclude_undecided,
+    excluded_bodies,
+    find_excluded_triangles,
+    intersection_notes,
+)
 from stiv.blender.settings import EditSettings, Exclusions
 from stiv.blender.verify.verification import Verifier
 
@@ -32,6 +37,7 @@ class MorphEdit:
 
     Attributes:
         sliders: those that were read.
+        start_notes: about objects that intersect themselves at the start, and about excluded pairs.
     """
 
     def __init__(
@@ -62,6 +68,7 @@ class MorphEdit:
         except BaseException:
             scene.write(scene.start)
             raise
+        self.start_notes = intersection_notes(excluded, {each.owner.name for each in self.sliders})
         self._verifier = Verifier(scene.assembly, self._session.is_step_free, settings.threads, excluded)
         self._shown = scene.start
         self._lower, self._upper = lower, upper
