@@ -244,7 +244,13 @@ class DragLoop:
         if self.writer.is_due and not self._solves_on():
             self._write(is_new=solves < self._solves)
         if self._confirmed and self.at_rest and not self._needs_refinement:
-            self.progress = Progress.FINISHED
+            self._end_confirmed()
+
+    def _end_confirmed(self) -> None:
+        """Finish. If no state was accepted, write the start: an operator without a report would solve again, at once."""
+        if self.result is not None and self.writer.report is None and self.writer.written is None:
+            self._write(is_new=False)
+        self.progress = Progress.FINISHED
 
     def _solves_on(self) -> bool:
         """Whether a confirmed drag is not at its end: drawing each state on the way would take longer than solving."""
@@ -392,7 +398,8 @@ class DragLoop:
 
     def _is_late(self, found: EditResult) -> bool:
         """Whether to keep what the user sees, which obstacles hold. A free motion ends at its goal, however late."""
-        return time.perf_counter() - self._confirmed_at > FINISHING_TIME and len(found.events) > 0
+        meets_obstacles = len(found.events) > 0 or found.counters.get("events", 0) > 0
+        return time.perf_counter() - self._confirmed_at > FINISHING_TIME and meets_obstacles
 
     def _end_late(self) -> None:
         """End the solves without a comparison."""

@@ -20,6 +20,12 @@ class FakeResult:
     blocking = ()
     seconds: float = 0.0
     events: tuple[object, ...] = ()
+    met: int = 0
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """Those of the core: a solve that accepts nothing counts events, but has none."""
+        return {"events": self.met}
 
     @property
     def timings(self) -> dict[str, float]:
@@ -182,8 +188,8 @@ class FakeEdit:
         self.accepted = min(float(matrix), 1.0, self.accepted + self.furthest)
         status = self.statuses.pop(0) if self.statuses else "reached"
         path = (self.accepted,) if self.furthest > 0 else ()
-        events = (object(),) if self.touching else ()
-        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2, self.solving, events)
+        events = (object(),) if self.touching and path else ()
+        return FakeResult(status, path, (float(matrix) - self.accepted) ** 2, self.solving, events, int(self.touching))
 
 
 class FakeTask(Task[Any]):

@@ -234,7 +234,8 @@ class DragOperator(Mixin):
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
-            outcome = translate("stopped") if drag.stopped else outcome_text(result)
+            stopped = drag.stopped or result.status == "budget"  # nothing solves on
+            outcome = translate("stopped") if stopped else outcome_text(result)
             report_outcome(self, outcome, write_failure(report), left_out_text(context, edit))
             edit.finish()
         store_proportional(context, drag.state.proportional)

@@ -410,6 +410,23 @@ def test_solves_that_meet_obstacles_end_some_time_after_the_confirmation(
     assert drag.result.status == ("corrected" if touching else "reached")
 
 
+@pytest.mark.parametrize("stops", [True, False])
+def test_a_drag_that_accepts_nothing_writes_its_start(stops: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a report, its operator would solve again, and Blender would stand still."""
+    monkeypatch.setattr(drag_loop, "FINISHING_TIME", 1e9 if stops else -1.0)
+    edit = FakeEdit(statuses=["budget"] * 100, furthest=0.0, touching=True, delays={"drag": 2})
+    drag = new_drag(edit)
+    follow(drag, *[90] * 5)
+    assert "write" not in edit.calls and drag.result is not None
+    drag.handle(Event("LEFTMOUSE"))
+    for event in [Event("ESC")] * stops:
+        drag.handle(event)
+    for _ in range(MAX_FRUITLESS):
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.stopped == stops
+    assert edit.calls[-1] == "write" and edit.shown == 0.0 and drag.writer.written is drag.result
+
+
 def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
     edit = FakeEdit(settling=True)
     drag = new_drag(edit)
