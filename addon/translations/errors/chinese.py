@@ -58,7 +58,6 @@ MESSAGES = {
     "it shows its rest position; choose Pose Position": "显示的是静置位置；请选择姿态位置",
     "it shows only its active shape key; turn that off": "只显示活动形态键；请关闭",
     "its fill changes its faces; convert it to a mesh": "填充会改变其面；请转换为网格",
-    "its loose edges cut its faces; delete them, or use Let These Pass": "其松散边与自身的面相交；请删除它们，或使用“允许这些穿过”",
     "its modifiers cannot be followed ({}); apply them": "无法跟随其修改器 ({})；请应用它们",
     "its override is not editable; make it editable in the Outliner": "其库重写不可编辑；请在大纲视图中设为可编辑",
     'its parent "{}" moves too; select both': "其父级“{}”也会移动；请同时选择两者",

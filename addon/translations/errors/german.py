@@ -58,7 +58,6 @@ MESSAGES = {
     "it shows its rest position; choose Pose Position": "zeigt die Ruheposition; Posenposition wählen",
     "it shows only its active shape key; turn that off": "zeigt nur den aktiven Formschlüssel; ausschalten",
     "its fill changes its faces; convert it to a mesh": "die Füllung ändert die Flächen; in ein Mesh konvertieren",
-    "its loose edges cut its faces; delete them, or use Let These Pass": "lose Kanten schneiden die Flächen; löschen, oder „Diese durchlassen“",
     "its modifiers cannot be followed ({}); apply them": "den Modifikatoren kann nicht gefolgt werden ({}); anwenden",
     "its override is not editable; make it editable in the Outliner": "die Überschreibung ist nicht bearbeitbar; im Outliner freigeben",
     'its parent "{}" moves too; select both': 'das Elternobjekt "{}" bewegt sich auch; beide auswählen',

@@ -58,7 +58,6 @@ MESSAGES = {
     "it shows its rest position; choose Pose Position": "レスト位置を表示しています。ポーズ位置を選んでください",
     "it shows only its active shape key; turn that off": "アクティブなシェイプキーだけを表示しています。オフにしてください",
     "its fill changes its faces; convert it to a mesh": "塗りつぶしで面が変わります。メッシュに変換してください",
-    "its loose edges cut its faces; delete them, or use Let These Pass": "孤立した辺が自身の面と交差しています。削除するか、「通過を許可」を使用してください",
     "its modifiers cannot be followed ({}); apply them": "モディファイアーに追従できません ({})。適用してください",
     "its override is not editable; make it editable in the Outliner": "オーバーライドが編集不可です。アウトライナーで編集可能にしてください",
     'its parent "{}" moves too; select both': "親「{}」も動きます。両方を選択してください",

@@ -58,7 +58,6 @@ MESSAGES = {
     "it shows its rest position; choose Pose Position": "휴식 위치를 표시함; 포즈 위치 선택하기",
     "it shows only its active shape key; turn that off": "활성 셰이프 키만 표시함; 끄기",
     "its fill changes its faces; convert it to a mesh": "채우기가 면을 바꿈; 메쉬로 변환하세요",
-    "its loose edges cut its faces; delete them, or use Let These Pass": "느슨한 에지가 자체 면과 교차함; 삭제하거나 이들을 통과 허용을 사용하세요",
     "its modifiers cannot be followed ({}); apply them": "모디파이어를 따를 수 없음 ({}); 적용하세요",
     "its override is not editable; make it editable in the Outliner": "오버라이드를 편집할 수 없음; 아웃라이너에서 편집 가능하게 하세요",
     'its parent "{}" moves too; select both': '부모 "{}"도 움직임; 둘 다 선택하세요',

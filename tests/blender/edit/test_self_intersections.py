@@ -5,7 +5,7 @@ from typing import Any
 
 import bpy
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, mesh, select, shift
+from building import add_cube, add_grid, add_modifier, edit_mode, select, shift
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene
@@ -64,16 +64,6 @@ def test_other_objects_that_intersect_still_need_a_decision() -> None:
     with pytest.raises(stiv.StartIntersectsError, match="Floor") as refused:
         BlenderEdit.begin(bpy.context, DEFORM, "move")
     assert not any("Suzanne" in line and "Floor" not in line for line in str(refused.value).split(";")[1:2])
-
-
-def test_loose_edges_through_faces_of_their_object_are_named_with_the_way_out() -> None:
-    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, -1), (0.1, 0, 1)]
-    sheet = add("Sheet", mesh("Sheet", corners, [(0, 1, 2, 3)], [(4, 5)]))
-    edit_mode(sheet)
-    with pytest.raises(stiv.InputError, match=r"^Sheet: its loose edges cut its faces; delete them, or use Let These"):
-        BlenderEdit.begin(bpy.context, EditSettings(), "move")
-    passing = BlenderEdit.begin(bpy.context, EditSettings(ignored_pairs=(("Sheet", "Sheet"),)), "move")
-    assert passing.apply(shift(1, 0, 0)).status == "reached"
 
 
 def test_obstacles_that_intersect_each_other_do_not_block() -> None:

@@ -112,23 +112,11 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     """
 
     def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
-        super().__init__((len(error.pairs) == 0 and _own_loose_parts(assembly)) or str(error))
+        super().__init__(str(error))
         self.pairs: Indices = error.pairs
         self.objects = intersecting_faces(assembly, error.pairs)
         if intersects_only_in_render(assembly, error):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
-
-
-def _own_loose_parts(assembly: Assembly) -> str:
-    """The message if nothing but the loose edges and vertices of one object intersect, with its own faces."""
-    surface = assembly.surface
-    edges, vertices = stiv.find_loose_intersections(assembly.positions, surface)
-    corners = [surface.loose_edges[edges[:, 0], 0], vertices[:, 0]]
-    corners += [surface.triangles[found[:, 1], 0] for found in (edges, vertices)]
-    names = {surface.bodies[body].name for body in surface.vertex_body[np.concatenate(corners)].tolist()}
-    if len(names) != 1:
-        return ""
-    return f"{names.pop()}: its loose edges cut its faces; delete them, or use Let These Pass"
 
 
 def open_session(*given: Any, **_execution: Any) -> stiv.EditSession:
