@@ -24,6 +24,7 @@ FOR_SCRIPTS = re.compile(r"^\w+: \{\}|--|^the settings name it|^there is no (obj
 BY_HAND = {  # of the compiled core, or composed of several parts
     "1 triangle has no area", "1 vertex follows", "back to the last state without intersections: {}",
     "bodies that may overlap would overlap more than at the start", "collisions stay off: {}",
+    "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose",
     "control {} is too large for single precision", "separation {}: the least that can be kept here is {}, because "
     "coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene "
     "nearer to the origin", "the faces have changed, so their exclusions are dropped",

@@ -124,6 +124,7 @@ MESSAGES = {
     "the scale of {} is locked; unlock it": "{} 的缩放已锁定；请解锁",
     "the selection has no surface; select visible meshes": "选择没有表面；请选择可见的网格",
     "the shape key {} is gone": "形态键 {} 已不存在",
+    "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose": "松散几何体与 {} 相交；请使用 网格 > 清理 > 删除松散元素",
     "the start already intersects: {} pairs of faces, {}": "起始状态已相交：{} 对面，{}",
     "the system is singular to rounding; add handles or fixed vertices": "方程组奇异；请添加控制柄",
     "the value of {} is not finite": "{} 的值不是有限数",

@@ -124,6 +124,7 @@ MESSAGES = {
     "the scale of {} is locked; unlock it": "die Skalierung von {} ist gesperrt; entsperren",
     "the selection has no surface; select visible meshes": "die Auswahl hat keine Oberfläche; sichtbare Meshes auswählen",
     "the shape key {} is gone": "der Formschlüssel {} ist verschwunden",
+    "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose": "lose Geometrie schneidet {}; Mesh > Aufräumen > Loses löschen benutzen",
     "the start already intersects: {} pairs of faces, {}": "der Anfang schneidet sich bereits: {} Flächenpaare, {}",
     "the system is singular to rounding; add handles or fixed vertices": "das Gleichungssystem ist singulär; Griffe hinzufügen",
     "the value of {} is not finite": "der Wert von {} ist nicht endlich",

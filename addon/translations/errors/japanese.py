@@ -124,6 +124,7 @@ MESSAGES = {
     "the scale of {} is locked; unlock it": "{} のスケールがロックされています。解除してください",
     "the selection has no surface; select visible meshes": "選択にサーフェスがありません。表示中のメッシュを選択してください",
     "the shape key {} is gone": "シェイプキー {} がなくなりました",
+    "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose": "孤立したジオメトリが {} と交差しています。メッシュ > クリーンアップ > 孤立を削除 を使ってください",
     "the start already intersects: {} pairs of faces, {}": "開始時にすでに交差しています: 面の組 {}、{}",
     "the system is singular to rounding; add handles or fixed vertices": "方程式が特異です。ハンドルを追加してください",
     "the value of {} is not finite": "{} の値が有限ではありません",

@@ -124,6 +124,7 @@ MESSAGES = {
     "the scale of {} is locked; unlock it": "{}의 축적이 잠김; 잠금 해제하기",
     "the selection has no surface; select visible meshes": "선택에 표면이 없음; 보이는 메쉬를 선택하세요",
     "the shape key {} is gone": "셰이프 키 {} 이(가) 없어짐",
+    "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose": "떨어진 지오메트리가 {}과(와) 교차함. 메쉬 > 정리 > 느슨한 항목 삭제 사용",
     "the start already intersects: {} pairs of faces, {}": "시작할 때 이미 교차함: 면 쌍 {}개, {}",
     "the system is singular to rounding; add handles or fixed vertices": "방정식이 특이함; 핸들을 추가하세요",
     "the value of {} is not finite": "{}의 값이 유한하지 않음",

@@ -50,6 +50,25 @@ def test_a_mesh_that_intersects_itself_is_edited_and_no_other_faces_intersect(le
         assert intersecting() <= before
 
 
+@pytest.mark.parametrize("is_edge", [True, False])
+def test_loose_geometry_that_cuts_its_own_mesh_is_refused_by_name(is_edge: bool) -> None:
+    """The message once began with "0 pairs of faces", and named nothing."""
+    grid = add_grid("Sword", 4)
+    mesh = grid.data
+    count = len(mesh.vertices)
+    mesh.vertices.add(2 if is_edge else 1)
+    if is_edge:
+        mesh.vertices[count].co, mesh.vertices[count + 1].co = (0.1, 0.05, -0.5), (0.1, 0.05, 0.5)
+        mesh.edges.add(1)
+        mesh.edges[-1].vertices = (count, count + 1)
+    else:
+        mesh.vertices[count].co = (0.1, 0.05, 0.0)
+    edit_mode(grid)
+    with pytest.raises(stiv.StartIntersectsError) as refused:
+        BlenderEdit.begin(bpy.context, DEFORM, "move")
+    assert str(refused.value) == "Sword: loose geometry cuts Sword; use Mesh > Clean Up > Delete Loose"
+
+
 def test_the_note_has_at_most_80_characters() -> None:
     monkey = suzanne()
     monkey.name = "M" * 63

@@ -15,7 +15,13 @@ from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER
-from stiv.blender.scene.exclusions import excluded_bodies, find_excluded_triangles, intersecting_faces
+from stiv.blender.scene.exclusions import (
+    excluded_bodies,
+    find_excluded_triangles,
+    intersecting_faces,
+    loose_geometry_text,
+)
+from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 from stiv.task import Call, Steps
@@ -112,11 +118,17 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     """
 
     def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
-        super().__init__(str(error))
+        super().__init__(str(error) if len(error.pairs) else loose_text(assembly) or str(error))
         self.pairs: Indices = error.pairs
         self.objects = intersecting_faces(assembly, error.pairs)
         if intersects_only_in_render(assembly, error):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
+
+
+def loose_text(assembly: Assembly) -> str:
+    """A message about the first loose edge or vertex that cuts a face; empty if none does."""
+    found = find_face_pairs(assembly, assembly.positions, intersecting=np.empty((0, 2), np.int32))
+    return loose_geometry_text(found[0].first.object, found[0].second.object) if found else ""
 
 
 def open_session(*given: Any, **_execution: Any) -> stiv.EditSession:

@@ -60,6 +60,13 @@ def intersection_text(first: str, second: str, count: int, ending: str = "") -> 
     return f"{_shortened(first, most)} cuts {_shortened(second, most)}{text}"
 
 
+def loose_geometry_text(first: str, second: str) -> str:
+    """What to do about loose edges or vertices of the first object that cut the second, which may be the same."""
+    text = "{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose"
+    most = (_MOST_CHARACTERS - len(text.format("", ""))) // 2
+    return text.format(_shortened(first, most), _shortened(second, most))
+
+
 def intersection_notes(excluded: Exclusions, moving: Collection[str]) -> tuple[str, ...]:
     """Notes about objects that intersect themselves, and about pairs of objects: the first few, and how many more.
 
