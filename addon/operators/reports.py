@@ -24,10 +24,12 @@ def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
     operator.report({kind}, text)
 
 
-def outcome_text(result: stiv_blender.EditResult) -> str:
-    """The status of a result, with the names of blocking objects."""
+def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None = None) -> str:
+    """The status of a result, with the names of blocking objects, or why none is named. edit: of the result, if known."""
     if stiv_blender.is_cut_by_topology(result):
         return translate("blocked: the topology changes here")
+    if result.status == "blocked" and not result.blocking and edit is not None and edit.keeps_intersections:
+        return translate("blocked: intersecting surfaces may only part")
     return result_text(result.status, tuple(result.blocking), translate)
 
 

@@ -445,6 +445,7 @@ MESSAGES = {
     "as close as contact allows": "so nah, wie der Kontakt es zulässt",
     "blocked": "blockiert",
     "blocked by {}": "blockiert von {}",
+    "blocked: intersecting surfaces may only part": "blockiert: was sich schneidet, darf sich nur trennen",
     "blocked: the topology changes here": "blockiert: hier ändert sich die Topologie",
     "cancelled": "abgebrochen",
     "cancelled, nothing changed": "abgebrochen, nichts ist verändert",

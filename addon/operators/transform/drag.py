@@ -176,7 +176,7 @@ class DragOperator(Mixin):
             return
         label = translate(OPERATORS[drag.state.kind].bl_label)
         value = drag.transform.text(drag.state, self._frame, translate, self._length) if drag.transform else label
-        status = outcome_text(drag.result) if drag.result is not None else ""
+        status = outcome_text(drag.result, drag.edit) if drag.result is not None else ""
         news = (replace(drag.state, pointer=NO_POINTER), value, status, id(writer.written), drag.note)
         if news == self._shown:  # a moved pointer alone is drawn with its result
             return
@@ -235,7 +235,7 @@ class DragOperator(Mixin):
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             stopped = drag.stopped or result.status == "budget"  # nothing solves on
-            outcome = translate("stopped") if stopped else outcome_text(result)
+            outcome = translate("stopped") if stopped else outcome_text(result, edit)
             report_outcome(self, outcome, write_failure(report), left_out_text(context, edit))
             edit.finish()
         store_proportional(context, drag.state.proportional)

@@ -59,6 +59,7 @@ MESSAGES = {
     "it shows only its active shape key; turn that off": "只显示活动形态键；请关闭",
     "its fill changes its faces; convert it to a mesh": "填充会改变其面；请转换为网格",
     "its modifiers cannot be followed ({}); apply them": "无法跟随其修改器 ({})；请应用它们",
+    "its pose cannot be followed ({}); check bone constraints": "无法跟随其姿态 ({})；请检查骨骼的约束",
     "its override is not editable; make it editable in the Outliner": "其库重写不可编辑；请在大纲视图中设为可编辑",
     'its parent "{}" moves too; select both': "其父级“{}”也会移动；请同时选择两者",
     "its parent is scaled unevenly; apply the parent's scale": "其父级缩放不均匀；请应用父级的缩放",

@@ -59,6 +59,7 @@ MESSAGES = {
     "it shows only its active shape key; turn that off": "zeigt nur den aktiven Formschlüssel; ausschalten",
     "its fill changes its faces; convert it to a mesh": "die Füllung ändert die Flächen; in ein Mesh konvertieren",
     "its modifiers cannot be followed ({}); apply them": "den Modifikatoren kann nicht gefolgt werden ({}); anwenden",
+    "its pose cannot be followed ({}); check bone constraints": "die Pose kann nicht verfolgt werden ({}); Constraints der Bones prüfen",
     "its override is not editable; make it editable in the Outliner": "die Überschreibung ist nicht bearbeitbar; im Outliner freigeben",
     'its parent "{}" moves too; select both': 'das Elternobjekt "{}" bewegt sich auch; beide auswählen',
     "its parent is scaled unevenly; apply the parent's scale": "das Elternobjekt ist ungleichmäßig skaliert; dessen Skalierung anwenden",

@@ -59,6 +59,7 @@ MESSAGES = {
     "it shows only its active shape key; turn that off": "アクティブなシェイプキーだけを表示しています。オフにしてください",
     "its fill changes its faces; convert it to a mesh": "塗りつぶしで面が変わります。メッシュに変換してください",
     "its modifiers cannot be followed ({}); apply them": "モディファイアーに追従できません ({})。適用してください",
+    "its pose cannot be followed ({}); check bone constraints": "ポーズを追えません ({})。ボーンのコンストレイントを確認してください",
     "its override is not editable; make it editable in the Outliner": "オーバーライドが編集不可です。アウトライナーで編集可能にしてください",
     'its parent "{}" moves too; select both': "親「{}」も動きます。両方を選択してください",
     "its parent is scaled unevenly; apply the parent's scale": "親のスケールが不均一です。親のスケールを適用してください",

@@ -59,6 +59,7 @@ MESSAGES = {
     "it shows only its active shape key; turn that off": "활성 셰이프 키만 표시함; 끄기",
     "its fill changes its faces; convert it to a mesh": "채우기가 면을 바꿈; 메쉬로 변환하세요",
     "its modifiers cannot be followed ({}); apply them": "모디파이어를 따를 수 없음 ({}); 적용하세요",
+    "its pose cannot be followed ({}); check bone constraints": "포즈를 따라갈 수 없음 ({}). 본의 제약을 확인하세요",
     "its override is not editable; make it editable in the Outliner": "오버라이드를 편집할 수 없음; 아웃라이너에서 편집 가능하게 하세요",
     'its parent "{}" moves too; select both': '부모 "{}"도 움직임; 둘 다 선택하세요',
     "its parent is scaled unevenly; apply the parent's scale": "부모의 축척이 균일하지 않음; 부모의 축척을 적용하세요",

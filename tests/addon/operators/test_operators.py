@@ -21,6 +21,7 @@ from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES  # noqa: E402
+from stiv_addon.operators.reports import outcome_text  # noqa: E402
 from stiv_addon.operators.transform import drag_results  # noqa: E402
 from stiv_addon.panels.base import draw_problem  # noqa: E402
 
@@ -234,6 +235,21 @@ def test_the_result_of_a_drag_is_reused_from_the_same_start(scene: Any) -> None:
     drag_results.find(number).start = "another"
     bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # from another start
     np.testing.assert_array_equal(scene.location, (1.0, 19.0, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("blocking", "keeps", "text"),
+    [
+        ((), True, "blocked: intersecting surfaces may only part"),
+        (("Wall",), True, "blocked by Wall"),
+        ((), False, "blocked"),
+    ],
+)
+def test_a_blocked_result_says_why_although_nothing_is_in_contact(
+    blocking: tuple[str, ...], keeps: bool, text: str
+) -> None:
+    result = SimpleNamespace(status="blocked", blocking=blocking, counters={})
+    assert outcome_text(result, SimpleNamespace(keeps_intersections=keeps)) == text
 
 
 def test_old_results_are_deleted() -> None:

@@ -15,7 +15,8 @@ from oracles import rational
 
 import stiv
 from blend_fixtures.characters import make_character, select_bones
-from stiv.blender import BlenderEdit, EditSettings, Motion, WriteReport
+from stiv.blender import BlenderEdit, EditSettings, Motion, UnsupportedStackError, WriteReport
+from stiv.blender.controls import control_reading
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 
 SETTINGS = EditSettings(separation=0.01)
@@ -534,3 +535,14 @@ def test_an_empty_mesh_on_the_rig_does_not_matter() -> None:
     empty.parent = rig
     _, report, _ = apply("rotate", turn(0.1, "Y", SHOULDER))
     assert report.passed
+
+
+def test_a_pose_that_a_copy_shows_differently_is_refused_without_applying_its_modifier(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Blender evaluates some rigs with several constraints on one bone in one of two ways, at random."""
+    box_below_hand()
+    monkeypatch.setattr(control_reading, "evaluation_tolerance", lambda points: -1.0)
+    with pytest.raises(stiv.InputError, match="its pose cannot be followed") as refused:
+        BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
+    assert not isinstance(refused.value, UnsupportedStackError)

@@ -245,6 +245,8 @@ def _check_references(control_set: ControlSet, moving: set[str]) -> None:
 def _refuse_difference(control_set: ControlSet, mesh: VisibleMesh | None, how: str) -> None:
     name = control_set.names[0] if mesh is None else mesh.owner.name
     ob = bpy.data.objects[name]
+    if control_set.posed is not None:  # to apply its Armature modifier would end the posing
+        raise InputError(f"{name}: its pose cannot be followed ({how}); check bone constraints")
     for modifier in ob.modifiers:
         if modifier.type in SIMULATIONS and is_active(modifier, ob, VIEWPORT):
             raise modifier_error(ob, modifier.name, "simulated")

@@ -128,6 +128,11 @@ class BlenderEdit:
         return replace(summary, warnings=(*self.start_notes, *summary.warnings))
 
     @property
+    def keeps_intersections(self) -> bool:
+        """Are there intersections that stay, and may only shrink?"""
+        return bool(self._solver.excluded.pairs)
+
+    @property
     def start_notes(self) -> tuple[str, ...]:
         """Notes about stale exclusions, intersections at the start that stay, seams, and users of a shared mesh."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
