@@ -247,7 +247,7 @@ class DragLoop:
             self._end_confirmed()
 
     def _end_confirmed(self) -> None:
-        """Finish. If no state was accepted, write the start: an operator without a report would solve again, at once."""
+        """Finish. If no state was accepted, write the start: an operator without a report would solve again."""
         if self.result is not None and self.writer.report is None and self.writer.written is None:
             self._write(is_new=False)
         self.progress = Progress.FINISHED

@@ -25,7 +25,7 @@ def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
 
 
 def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None = None) -> str:
-    """The status of a result, with the names of blocking objects, or why none is named. edit: of the result, if known."""
+    """The status of a result, with the names of blocking objects, or why none is named. edit: of the result."""
     if stiv_blender.is_cut_by_topology(result):
         return translate("blocked: the topology changes here")
     if result.status == "blocked" and not result.blocking and edit is not None and edit.keeps_intersections:
