@@ -355,8 +355,10 @@ class DragLoop:
         nothing_accepted = found.status == "budget" and len(found.path) == 0
         may_gain = self._repeated.may_gain(goal.state, found, self._confirmed, self._rests())
         is_late = self._is_late(found)
-        self._pending = not self.stopped and ((may_gain and not is_late) or not same_goal(goal.state, self.state))
-        self._unfinished = goal if nothing_accepted else None
+        is_current = same_goal(goal.state, self.state)
+        self._pending = not self.stopped and ((may_gain and not is_late) or not is_current)
+        continues = is_current or not self._confirmed  # a solve of an earlier goal may run at the confirmation
+        self._unfinished = goal if nothing_accepted and continues else None
         self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
         if self._pending:
             return

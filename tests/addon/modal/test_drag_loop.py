@@ -427,6 +427,20 @@ def test_a_drag_that_accepts_nothing_writes_its_start(stops: bool, monkeypatch: 
     assert edit.calls[-1] == "write" and edit.shown == 0.0 and drag.writer.written is drag.result
 
 
+def test_a_solve_that_runs_at_the_confirmation_does_not_continue_its_goal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its goal would be solved for until it was given up, a minute later: another one stays pending."""
+    monkeypatch.setattr(drag_loop, "FINISHING_TIME", -1.0)
+    edit = FakeEdit(statuses=["budget"] * 100, furthest=0.0, touching=True, delays={"drag": 3})
+    drag = new_drag(edit)
+    follow(drag, 50)
+    drag.handle(move_to(90))
+    drag.handle(Event("LEFTMOUSE"))
+    assert drag.progress is Progress.FINISHING
+    while drag.progress is Progress.FINISHING:
+        drag.tick()
+    assert edit.goals == [0.5, 0.9]
+
+
 def test_a_drag_without_a_rest_settles_only_at_the_confirmation() -> None:
     edit = FakeEdit(settling=True)
     drag = new_drag(edit)
