@@ -17,6 +17,7 @@ from ..transform.view import Vector, View
 from .orientations import axes_of
 
 NO_POINTS = np.empty((0, 3))
+LENS_TOLERANCE = 1e-3  # of a view's matrix, which Blender stores in single precision
 
 
 def read_frame(context: bpy.types.Context, selection: Sequence[Vector] | None = None) -> Frame:
@@ -39,12 +40,25 @@ def orientation_names(context: bpy.types.Context) -> tuple[str, str]:
 
 
 def frame_in_new_view(context: bpy.types.Context, frame: Frame) -> Frame:
-    """The frame with the current view; the same object if the view has not changed."""
+    """The frame with the current view; the same object if nobody has changed the view."""
     view = _view(context)
     if view is None or frame.view is None:
         return frame
     same = view.size == frame.view.size and np.array_equal(view.projection, frame.view.projection)
-    return frame if same else replace(frame, view=view)
+    return frame if same or _only_camera_moved(context, frame.view) else replace(frame, view=view)
+
+
+def _only_camera_moved(context: bpy.types.Context, before: View) -> bool:
+    """Has the view's camera moved, with the same lens? It may follow the selection, which must not chase it.
+
+    Navigation zooms, which changes the lens, or leaves the camera, unless that is locked to the view.
+    """
+    data = context.region_data
+    if data.view_perspective != "CAMERA" or context.space_data.lock_camera:
+        return False
+    placed = np.linalg.inv(np.array(data.window_matrix)) @ before.projection  # rigid, if the lens is the same
+    rigid = np.allclose(placed[:3, :3] @ placed[:3, :3].T, np.eye(3), atol=LENS_TOLERANCE)
+    return bool(rigid and np.allclose(placed[3], (0.0, 0.0, 0.0, 1.0), atol=LENS_TOLERANCE))
 
 
 def _view(context: bpy.types.Context) -> View | None:
