@@ -436,7 +436,8 @@ class DragLoop:
     def _take_edit(self, request: Request, found: Edit | ValueError) -> None:
         """Continue with another edit, or with the old one if another is refused."""
         if isinstance(found, ValueError):
-            self.state, self._refusal = replace(self.state, request=self._begun), str(found)
+            self.state = replace(self.state, request=self._begun)
+            self._refusal = getattr(found, "short", "") or str(found)  # of objects that intersect: the first two
             return
         self.edit, self._begun, self.writer.turned = found, request, 0.0
 

@@ -12,6 +12,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
+from ...intersection_texts import brief
 from ...modal.axis_lock import AxisLock
 from ...modal.drag_loop import DragCalls, DragEnded, DragLoop, Progress
 from ...modal.header_texts import turned_text
@@ -182,7 +183,8 @@ class DragOperator(Mixin):
             return
         self._shown = news
         turned = turned_text(writer.turned, translate)
-        notes = [text for text in (turned, translate_error(drag.note), write_failure(writer.report)) if text]
+        note = brief(translate_error(drag.note))  # a longer one would not fit the header, and be left out
+        notes = [text for text in (turned, note, write_failure(writer.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if writer.written is not None and writer.written is drag.result:
             display.show_edit(drag.edit, writer.written, self._motion_of_all())

@@ -538,6 +538,18 @@ def test_a_rejected_request_is_reported_and_the_old_edit_continues() -> None:
     assert (drag.note, drag.state.kind, edit.shown) == ("it cannot be turned", "move", 0.7)
 
 
+def test_a_rejection_of_objects_that_intersect_is_reported_in_short() -> None:
+    """The header has no place for all of them, and would leave the note out."""
+    error = ValueError("the start already intersects: 912 pairs of faces, " + 9 * "many names, ")
+    error.short = "Box cuts Plane, 9 faces"
+    edit = FakeEdit(failing={"again": error})
+    drag = new_drag(edit)
+    follow(drag, 30)
+    drag.handle(Event("W"))
+    pause(drag)
+    assert drag.note == "Box cuts Plane, 9 faces"
+
+
 def test_a_request_and_a_confirmation_at_once_end_in_the_new_kind() -> None:
     edit = FakeEdit()
     drag = new_drag(edit)

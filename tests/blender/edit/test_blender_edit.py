@@ -177,6 +177,7 @@ def test_start_that_intersects_is_refused() -> None:
     with pytest.raises(stiv.StartIntersectsError, match="Cübe A") as caught:
         begin()
     assert len(caught.value.pairs) > 0
+    assert caught.value.short.startswith("Cübe A cuts Floor, ")
     assert snapshot() == before
 
 

@@ -19,6 +19,7 @@ from stiv.blender.scene.exclusions import (
     excluded_bodies,
     find_excluded_triangles,
     intersecting_faces,
+    intersection_text,
     loose_geometry_text,
 )
 from stiv.blender.scene.face_pairs import find_face_pairs
@@ -115,12 +116,14 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     Attributes:
         pairs: intersecting pairs of triangles, (k, 2).
         objects: pairs of objects with the number of their intersecting faces; not of an object with itself.
+        short: a message about the first pair of objects; "" without any.
     """
 
     def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
         super().__init__(str(error) if len(error.pairs) else loose_text(assembly) or str(error))
         self.pairs: Indices = error.pairs
         self.objects = intersecting_faces(assembly, error.pairs)
+        self.short = intersection_text(*self.objects[0]) if self.objects else ""
         if intersects_only_in_render(assembly, error):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
 
