@@ -61,7 +61,7 @@ def intersection_text(first: str, second: str, count: int, ending: str = "") -> 
 
 
 def loose_geometry_text(first: str, second: str) -> str:
-    """What to do about loose edges or vertices of the first object that cut the second, which may be the same."""
+    """The message about loose edges or vertices of the first object that cut the second, which may be the same."""
     text = "{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose"
     most = (_MOST_CHARACTERS - len(text.format("", ""))) // 2
     return text.format(_shortened(first, most), _shortened(second, most))
