@@ -139,7 +139,6 @@ MESSAGES = {
     "{} changed its number of vertices": "{} 的顶点数已改变",
     "{} cuts itself in {}, {}": "{} 与自身相交 ({})，{}",
     "{} cuts {} in {}, {}": "{} 与 {} 相交 ({})，{}",
-    "{} cuts itself in {}, {}": "{} 与自身相交 ({})，{}",
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",
     '{} depends on "{}"; select both': "{}依赖于“{}”；请同时选择两者",

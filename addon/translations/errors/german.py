@@ -139,7 +139,6 @@ MESSAGES = {
     "{} changed its number of vertices": "{}: die Zahl der Vertices hat sich geändert",
     "{} cuts itself in {}, {}": "{} schneidet sich selbst in {}, {}",
     "{} cuts {} in {}, {}": "{} schneidet {} in {}, {}",
-    "{} cuts itself in {}, {}": "{} schneidet sich selbst in {}, {}",
     "{} cuts {}, {} faces, may only part": "{} schneidet {}, {} Flächen, dürfen sich nur trennen",
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",
     '{} depends on "{}"; select both': '{} hängt von "{}" ab; beide auswählen',

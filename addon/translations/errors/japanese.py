@@ -139,7 +139,6 @@ MESSAGES = {
     "{} changed its number of vertices": "{} の頂点数が変わりました",
     "{} cuts itself in {}, {}": "{} が自己交差 ({})、{}",
     "{} cuts {} in {}, {}": "{} と {} が交差 ({})、{}",
-    "{} cuts itself in {}, {}": "{} が自己交差 ({})、{}",
     "{} cuts {}, {} faces, may only part": "{} と {} が交差、面 {}。離れることだけできます",
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",
     '{} depends on "{}"; select both': "{} が「{}」に依存しています。両方を選択してください",

@@ -139,7 +139,6 @@ MESSAGES = {
     "{} changed its number of vertices": "{}의 버텍스 개수가 바뀜",
     "{} cuts itself in {}, {}": "{} 자기 교차 ({}), {}",
     "{} cuts {} in {}, {}": "{} 교차 {} ({}), {}",
-    "{} cuts itself in {}, {}": "{} 자기 교차 ({}), {}",
     "{} cuts {}, {} faces, may only part": "{} 교차 {}, 면 {}개, 떨어질 수만 있음",
     "{} cuts {}, {} faces{}": "{} 교차 {}, 면 {}개{}",
     '{} depends on "{}"; select both': '{}이(가) "{}"에 의존함; 둘 다 선택하세요',

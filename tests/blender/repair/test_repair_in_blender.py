@@ -284,7 +284,7 @@ def test_a_repair_names_the_object_whose_topology_changes() -> None:
     add_cube("Block", location=(1, 0, 0.1), size=0.5)
     select(ball)
     before = snapshot()
-    with pytest.raises(stiv.InputError, match="^Ball: its topology changes as it moves; apply its modifiers$"):
+    with pytest.raises(stiv.InputError, match=r"^Ball: its topology changes as it moves; apply its modifiers$"):
         repair_scene(bpy.context)
     assert snapshot() == before
 
