@@ -238,7 +238,7 @@ class DragOperator(Mixin):
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             stopped = drag.stopped or result.status == "budget"  # nothing solves on
             outcome = translate("stopped") if stopped else outcome_text(result, edit)
-            report_outcome(self, outcome, write_failure(report), left_out_text(context, edit))
+            report_outcome(self, outcome, write_failure(report), left_out_text(context, edit, edit.passenger_note))
             edit.finish()
         store_proportional(context, drag.state.proportional)
         store_snap(context, drag.state)

@@ -86,7 +86,7 @@ def test_those_that_cannot_move_along_freely_stay_and_are_named(hold: Callable[[
     hold(camera)
     select(cube, camera)
     edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
-    assert edit.start_notes == ("Camera: cannot move along; move it with Blender",)
+    assert edit.start_notes == (edit.passenger_note,) == ("Camera: cannot move along; move it with Blender",)
     assert edit.apply(shift(x=1) if kind == "move" else stretch(2.0)).status == "reached" and edit.write().passed
     assert tuple(camera.location) == (4, 0, 0) and tuple(camera.scale) == (1, 1, 1)
 

@@ -154,6 +154,11 @@ class BlenderEdit:
         return next(filter(None, notes), "")
 
     @property
+    def passenger_note(self) -> str:
+        """The message on selected objects without a surface that cannot move along; "" without any."""
+        return next((each.note for each in self.control_sets if each.role == "rigid" and each.note), "")
+
+    @property
     def reset_note(self) -> str:
         """The message on a placed object that its keyframes reset at the next frame; "" without any."""
         writers = [each.writer for each in self.control_sets if isinstance(each.writer, PlacementWriter)]
