@@ -6,7 +6,8 @@ from __future__ import annotations
 import argparse
 import glob
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,7 @@ from stiv.choices import GUARDS
 from stiv.command_line.file_checking import CheckOptions, check_path
 from stiv.command_line.options import add_blender_option, frame_range
 from stiv.command_line.progress import progress_bar
+from stiv.command_line.separate_checks import CheckProcess
 from stiv.exit_codes import ExitCode
 from stiv.json_files import write_json
 from stiv.mesh_files import SUFFIXES
@@ -27,6 +29,8 @@ from stiv.output_files import require_folder, written_atomically
 
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
+
+Check = Callable[[Path, CheckOptions, Callable[[str], None]], FileCheck]
 
 _DESCRIPTION = f"""\
 Tests exactly whether two triangles intersect apart from the vertices and edges that they share. Contact, coplanar
@@ -95,9 +99,9 @@ def _run(arguments: argparse.Namespace) -> ExitCode:
     baseline = {} if arguments.baseline is None or arguments.write_baseline else read_baseline(arguments.baseline)
     paths = list(_expanded(arguments.files))
     checks = []
-    with progress_bar("check", len(paths)) as advance:
+    with progress_bar("check", len(paths)) as advance, _checking(paths) as check_one:
         for path in paths:
-            checks.append(_checked(path, arguments, baseline, lambda note: advance(note, 0)))
+            checks.append(_checked(check_one, path, arguments, baseline, lambda note: advance(note, 0)))
             advance(path.name)
     for check in checks:
         print(summary(check, arguments.seams), file=sys.stderr if check.error else sys.stdout)
@@ -132,15 +136,28 @@ def _expanded(names: Iterable[str]) -> Iterator[Path]:
         yield from map(Path, matches or [name])
 
 
+@contextmanager
+def _checking(paths: Sequence[Path]) -> Iterator[Check]:
+    """How files are checked: several .blend files in a process of its own, unless this is an installed Blender."""
+    if "bpy" in sys.modules or sum(path.suffix.lower() == ".blend" for path in paths) < 2:
+        yield check_path
+        return
+    process = CheckProcess()
+    try:
+        yield process.check
+    finally:
+        process.close()
+
+
 def _checked(
-    path: Path, arguments: argparse.Namespace, baseline: Baseline, on_look: Callable[[str], None]
+    check_one: Check, path: Path, arguments: argparse.Namespace, baseline: Baseline, on_look: Callable[[str], None]
 ) -> FileCheck:
     choices = CheckOptions(
         tuple(arguments.object), arguments.frames, arguments.subframes, arguments.pictures, arguments.scene,
         arguments.render, arguments.hidden, arguments.guard,
     )  # fmt: skip
     try:
-        check = check_path(path, choices, on_look)
+        check = check_one(path, choices, on_look)
     except InputError as error:
         return FileCheck(path.as_posix(), error=str(error).removeprefix(f"{path}: "))
     return without_accepted(check, baseline, arguments.baseline.parent) if baseline else check
