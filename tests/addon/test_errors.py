@@ -32,7 +32,7 @@ BY_HAND = {  # of the compiled core, or composed of several parts
     "vertices", "{} cuts {}, {} faces, may only part", "{} cuts {}, {} faces{}",
     "{} intersects itself, {} faces, left as it is", "{} more objects intersect themselves, left as they are",
     "{} more pairs of objects cut each other, may only part", "{} triangles have no area", "{} vertices follow",
-    "{}{}: cannot move along; move it with Blender",
+    "{}{}: cannot move along; use Blender's own transform",
 }  # fmt: skip
 
 

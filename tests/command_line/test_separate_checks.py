@@ -52,6 +52,8 @@ def test_a_crash_costs_one_file(checks: CheckProcess, path: Path) -> None:
     checks.check(path, CheckOptions(), str)
     assert checks.pid is not None
     os.kill(checks.pid, signal.SIGKILL if hasattr(signal, "SIGKILL") else signal.SIGTERM)
-    with pytest.raises(InputError, match=r"crossed\.obj: Blender crashed on this file; open it in Blender"):
+    with pytest.raises(
+        InputError, match=r"crossed\.obj: Blender crashed on this file; save it again in the Blender that made it"
+    ):
         checks.check(path, CheckOptions(), str)
     assert len(checks.check(path, CheckOptions(), str).findings) == 1

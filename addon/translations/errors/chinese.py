@@ -159,6 +159,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{}使用“{}”；请取消选择其一",
     "{} vertices follow": "{} 个顶点跟随",
     "{} vertices, {} has {}; use another target": "{} 个顶点，{} 有 {} 个；请使用其他目标物",
-    "{}{}: cannot move along; move it with Blender": "{}{}：无法一起移动；请用 Blender 移动",
+    "{}{}: cannot move along; use Blender's own transform": "{}{}：无法一起移动；请用 Blender 移动",
     "{}{}: no surface; also select an object that has one": "{}{}：没有表面；请同时选择有表面的物体",
 }

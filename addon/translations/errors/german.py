@@ -159,6 +159,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{} verwendet "{}"; eines abwählen',
     "{} vertices follow": "{} Vertices folgen",
     "{} vertices, {} has {}; use another target": "{} Vertices, {} hat {}; anderes Ziel verwenden",
-    "{}{}: cannot move along; move it with Blender": "{}{}: kann nicht mitbewegt werden; mit Blender bewegen",
+    "{}{}: cannot move along; use Blender's own transform": "{}{}: kann nicht mitbewegt werden; mit Blender bewegen",
     "{}{}: no surface; also select an object that has one": "{}{}: keine Oberfläche; auch ein Objekt mit Oberfläche auswählen",
 }

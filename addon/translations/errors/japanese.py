@@ -159,6 +159,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{} が「{}」を使っています。一方の選択を解除してください",
     "{} vertices follow": "{} 頂点が従います",
     "{} vertices, {} has {}; use another target": "頂点 {} 個ですが {} は {} 個です。別のターゲットを使ってください",
-    "{}{}: cannot move along; move it with Blender": "{}{}: 一緒に移動できません。Blender で移動してください",
+    "{}{}: cannot move along; use Blender's own transform": "{}{}: 一緒に移動できません。Blender で移動してください",
     "{}{}: no surface; also select an object that has one": "{}{}: サーフェスがありません。サーフェスのあるオブジェクトも選択してください",
 }

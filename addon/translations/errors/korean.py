@@ -159,6 +159,6 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{}이(가) "{}"을(를) 사용함; 하나를 선택 해제하세요',
     "{} vertices follow": "버텍스 {}개가 따라감",
     "{} vertices, {} has {}; use another target": "버텍스 {}개, {}은(는) {}개; 다른 대상을 사용하세요",
-    "{}{}: cannot move along; move it with Blender": "{}{}: 함께 이동할 수 없음; Blender로 이동하세요",
+    "{}{}: cannot move along; use Blender's own transform": "{}{}: 함께 이동할 수 없음; Blender로 이동하세요",
     "{}{}: no surface; also select an object that has one": "{}{}: 표면이 없음; 표면이 있는 오브젝트도 선택하세요",
 }

@@ -44,7 +44,9 @@ class CheckProcess:
                 on_look(text)
         except (EOFError, OSError) as end:
             self.close()
-            raise InputError(f"{path}: Blender crashed on this file; open it in Blender and save it again") from end
+            raise InputError(
+                f"{path}: Blender crashed on this file; save it again in the Blender that made it"
+            ) from end
 
     def close(self) -> None:
         """End the process."""

@@ -81,12 +81,12 @@ def turned(ob: Any) -> None:
 
 @pytest.mark.parametrize(("hold", "kind"), [(locked, "move"), (constrained, "move"), (turned, "scale")])
 def test_those_that_cannot_move_along_freely_stay_and_are_named(hold: Callable[[Any], None], kind: str) -> None:
-    """They once had no say; they must not hold the others either."""
+    """They must not keep the others from moving."""
     cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
     hold(camera)
     select(cube, camera)
     edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
-    assert edit.start_notes == (edit.passenger_note,) == ("Camera: cannot move along; move it with Blender",)
+    assert edit.start_notes == (edit.passenger_note,) == ("Camera: cannot move along; use Blender's own transform",)
     assert edit.apply(shift(x=1) if kind == "move" else stretch(2.0)).status == "reached" and edit.write().passed
     assert tuple(camera.location) == (4, 0, 0) and tuple(camera.scale) == (1, 1, 1)
 

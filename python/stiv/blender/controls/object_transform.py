@@ -75,6 +75,11 @@ def check_axes(name: str, world: Floats) -> None:
         raise InputError(f"{name}: its parent shears it; apply its transform")
 
 
+def are_parallel(one: Floats, other: Floats) -> bool:
+    """Have two frames of unit axes, (3, 3) each, the same axes, up to their direction?"""
+    return bool(np.abs(np.abs(one.T @ other) - np.eye(3)).max() <= RIGHT_ANGLE)
+
+
 def write_transform(ob: bpy.types.Object, start: ObjectTransform, motion: Floats, factors: Floats) -> None:
     """Move the object by `motion`, (4, 4), since the start: rigidly, or scaled by `factors` along its axes.
 

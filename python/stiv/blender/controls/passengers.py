@@ -4,16 +4,15 @@
 from collections.abc import Collection, Sequence
 
 import bpy
-import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
-from stiv.blender.controls.object_transform import RIGHT_ANGLE, read_transform
+from stiv.blender.controls.object_transform import are_parallel, read_transform
 from stiv.blender.controls.participants import followed_objects, may_have_surface
 from stiv.blender.controls.rigid_groups import RigidGroup, join_groups
 from stiv.blender.controls.transform_locks import can_rotate, is_location_locked
-from stiv.blender.scene.arrays import as_matrix
+from stiv.blender.scene.arrays import Floats, as_matrix
 
 
 def leave_held_passengers(
@@ -34,7 +33,7 @@ def leave_held_passengers(
     held = [each for each in passengers if not _moves_along(each.reference.find(), solid[0], kind)]
     named = [each.reference.name for each in held if not is_location_locked(each.reference.find())]
     others = f" and {len(named) - 1} more" if len(named) > 1 else ""
-    note = f"{named[0]}{others}: cannot move along; move it with Blender" if named else ""
+    note = f"{named[0]}{others}: cannot move along; use Blender's own transform" if named else ""
     return [each for each in participants if each not in held], note
 
 
@@ -48,16 +47,14 @@ def _moves_along(ob: bpy.types.Object, first: bpy.types.Object, kind: str) -> bo
         return False
     if kind == "rotate" and not (can_rotate(ob) and read_transform(ob).can_hold_rotations()):
         return False
-    if kind == "scale" and (any(ob.lock_scale) or not _are_parallel(ob, first)):
+    if kind == "scale" and (any(ob.lock_scale) or not are_parallel(*map(_unit_axes, (ob, first)))):
         return False
     return not any(ob.lock_location)
 
 
-def _are_parallel(one: bpy.types.Object, other: bpy.types.Object) -> bool:
-    """Do both objects have the same axes, up to their direction?"""
-    first, second = (as_matrix(each.matrix_world.normalized())[:3, :3] for each in (one, other))
-    products = np.abs(first.T @ second)
-    return bool(np.abs(products - np.eye(3)).max() <= RIGHT_ANGLE)
+def _unit_axes(ob: bpy.types.Object) -> Floats:
+    """World directions of an object's axes as columns, (3, 3)."""
+    return as_matrix(ob.matrix_world.normalized())[:3, :3]
 
 
 def add_passengers(groups: list[RigidGroup], shown: Collection[str]) -> list[RigidGroup]:

@@ -9,7 +9,7 @@ import numpy as np
 import stiv
 from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.controls.object_transform import ObjectTransform, check_axes, read_transform
+from stiv.blender.controls.object_transform import ObjectTransform, are_parallel, check_axes, read_transform
 from stiv.blender.controls.placed_stack import PlacedStack
 from stiv.blender.controls.placement_goals import PivotDeformation, PlacementGoal, RotationGoal, ScaleGoal
 from stiv.blender.controls.placement_motion import PlacementMotion
@@ -123,7 +123,7 @@ def _axes(group: RigidGroup, starts: Sequence[ObjectTransform]) -> Floats:
         columns = start.world[:3, :3] / np.linalg.norm(start.world[:3, :3], axis=0)
         frames.append(nearest_rotation(columns * [1, 1, np.sign(np.linalg.det(columns))]))
     for root, frame in zip(group.roots[1:], frames[1:], strict=True):
-        if np.abs(np.abs(frames[0].T @ frame) - np.eye(3)).max() > 1e-5:
+        if not are_parallel(frames[0], frame):
             raise InputError(
                 f'{root.reference.name}: moves with "{group.roots[0].reference.name}" '
                 "but has another rotation; scale it alone"
