@@ -158,9 +158,11 @@ int poor_pulls_before_end(const Execution& execution) { return execution.has_tim
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
                                const Execution& execution) {
   const double increment = context.longest_displacement(drag.followed.surface, aim.surface);
-  const double pulls = std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance()));
-  if (context.has_large_body()) return {pulls * context.pull_distance(), 1, 1};
-  return {context.pull_distance(), static_cast<int>(pulls), poor_pulls_before_end(execution)};
+  const int to_retreat =
+      static_cast<int>(std::min<double>(max_pulls_of_drag, 1 + std::ceil(increment / context.pull_distance())));
+  if (context.has_large_body()) return {to_retreat * context.pull_distance(), 1, 1};
+  const int pulls = execution.has_time_budget() ? to_retreat : max_pulls_of_drag;
+  return {context.pull_distance(), pulls, poor_pulls_before_end(execution)};
 }
 
 void pull_until_settled(EditCall& call, const Aim& aim, const PullLimits& limits) {

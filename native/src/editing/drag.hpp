@@ -53,9 +53,10 @@ struct PullLimits {
 /// Consecutive poor pulls that end a call. One, if a time budget ends most calls after a pull at most.
 int poor_pulls_before_end(const Execution& execution);
 
-/// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more. A mouse that
-/// returns from deep inside a wall lifts the shape off the wall, and pulls move it back. With a large body, one pull
-/// goes as far as all of them together: each would need a search and a test of the whole body.
+/// The limits of a drag's pulls: enough of them to retreat the length of the increment, and one more; without a time
+/// budget, as many as gain enough. A mouse that returns from deep inside a wall lifts the shape off the wall, and pulls
+/// move it back. With a large body, one pull goes as far as all of them together: each would need a search and a test
+/// of the whole body.
 PullLimits pull_limits_of_drag(const EditContext& context, const DragProgress& drag, const Aim& aim,
                                const Execution& execution);
 
