@@ -51,23 +51,46 @@ def test_a_mesh_that_intersects_itself_is_edited_and_no_other_faces_intersect(le
         assert intersecting() <= before
 
 
-@pytest.mark.parametrize("is_edge", [True, False])
-def test_loose_geometry_that_cuts_its_own_mesh_is_refused_by_name(is_edge: bool) -> None:
-    """The message once began with "0 pairs of faces", and named nothing."""
-    grid = add_grid("Sword", 4)
-    mesh = grid.data
+def add_loose_part(ob: Any, kind: str) -> None:
+    """A loose edge through a face, one between a corner of a face and another face, or a vertex in a face."""
+    mesh = ob.data
     count = len(mesh.vertices)
-    mesh.vertices.add(2 if is_edge else 1)
-    if is_edge:
-        mesh.vertices[count].co, mesh.vertices[count + 1].co = (0.1, 0.05, -0.5), (0.1, 0.05, 0.5)
+    points = {"edge": [(0.1, 0.05, -0.5), (0.1, 0.05, 0.5)], "attached edge": [(0.1, 0.05, -0.5)]}
+    points["vertex"] = [(0.1, 0.05, 0.0)]
+    mesh.vertices.add(len(points[kind]))
+    for vertex, place in zip(mesh.vertices[count:], points[kind], strict=True):
+        vertex.co = place
+    if kind == "attached edge":
+        mesh.vertices[0].co.z = 0.5  # the edge passes through the face between its ends
+        mesh.vertices[count].co = (0.4, 0.45, -0.5)
+    if kind != "vertex":
         mesh.edges.add(1)
-        mesh.edges[-1].vertices = (count, count + 1)
-    else:
-        mesh.vertices[count].co = (0.1, 0.05, 0.0)
+        mesh.edges[-1].vertices = (count, count + 1) if kind == "edge" else (0, count)
+
+
+@pytest.mark.parametrize("kind", ["edge", "attached edge", "vertex"])
+def test_loose_parts_that_cut_their_own_mesh_are_left_out_and_counted(kind: str) -> None:
+    grid = add_grid("Sword", 4)
+    add_loose_part(grid, kind)
+    add_cube("Block", (0, 0, -2.0), 1.0)
+    edit_mode(grid)
+    before = len(check_scene(bpy.context).pairs)
+    assert before > 0
+    edit = BlenderEdit.begin(bpy.context, DEFORM, "move")
+    assert edit.start_notes == ("Sword: 1 loose edge or vertex cuts it and is not tested",)
+    assert edit.apply(shift(z=-2.0)).status == "corrected"
+    assert edit.write().passed
+    assert not [pair for pair in check_scene(bpy.context).pairs if pair.first.kind == pair.second.kind == "face"]
+
+
+def test_loose_parts_that_cut_another_object_are_refused_by_name() -> None:
+    grid = add_grid("Sword", 4)
+    add_loose_part(grid, "edge")
+    add_cube("Block", (0.1, 0.05, 0.5), 0.2)
     edit_mode(grid)
     with pytest.raises(stiv.StartIntersectsError) as refused:
         BlenderEdit.begin(bpy.context, DEFORM, "move")
-    assert str(refused.value) == "Sword: loose geometry cuts Sword; use Mesh > Clean Up > Delete Loose"
+    assert str(refused.value) == "Sword: loose geometry cuts Block; use Mesh > Clean Up > Delete Loose"
 
 
 def test_the_note_has_at_most_80_characters() -> None:

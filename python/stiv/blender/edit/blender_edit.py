@@ -134,11 +134,12 @@ class BlenderEdit:
 
     @property
     def start_notes(self) -> tuple[str, ...]:
-        """Notes about stale exclusions, intersections at the start that stay, seams, and users of a shared mesh."""
+        """Notes about stale exclusions, intersections at the start, untested loose parts, seams, and shared meshes."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
         notes = tuple(each.note for each in self.control_sets if each.note)
         moving = {name for each in self.control_sets for name in each.names}
-        return (*dropped, *intersection_notes(self._solver.intersecting, moving), *notes)
+        intersecting = intersection_notes(self._solver.intersecting, moving)
+        return (*dropped, *intersecting, *self._solver.loose_part_notes, *notes)
 
     @property
     def fold_note(self) -> str:

@@ -129,9 +129,10 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
 
 
 def loose_text(assembly: Assembly) -> str:
-    """A message about the first loose edge or vertex that cuts a face; empty if none does."""
+    """A message about a loose edge or vertex that cuts a face, of another object if one does; empty if none does."""
     found = find_face_pairs(assembly, assembly.positions, intersecting=np.empty((0, 2), np.int32))
-    return loose_geometry_text(found[0].first.object, found[0].second.object) if found else ""
+    names = sorted(((pair.first.object, pair.second.object) for pair in found), key=lambda each: each[0] == each[1])
+    return loose_geometry_text(*names[0]) if names else ""
 
 
 def open_session(*given: Any, **_execution: Any) -> stiv.EditSession:

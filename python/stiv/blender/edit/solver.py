@@ -22,6 +22,7 @@ from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
+from stiv.blender.scene.loose_parts import find_cutting_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
@@ -34,6 +35,7 @@ class EditSolver:
 
     intersecting: the excluded pairs of the settings, and those at the start that needed no decision.
     excluded: the same with pairs beside them that touch at the start.
+    loose_part_notes: notes on loose edges and vertices that are left out.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class EditSolver:
         self.control_sets = tuple(control_sets)
         self._settings = settings
         self.intersecting = self.excluded = settings.excluded
+        self.loose_part_notes: tuple[str, ...] = ()
         self._session: stiv.EditSession | None = None
         self._inputs: SessionInputs | None = None  # of the session, if the next edit may use it
         self._blocked, self._calls = False, 0
@@ -180,8 +183,12 @@ class EditSolver:
         except stiv.StartIntersectsError as error:
             if self._session is not None:
                 raise
-            pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, self._moving(assembly))
+            moving = self._moving(assembly)
+            pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, moving)
             self.intersecting = self.excluded = pairs
+            loose = find_cutting_parts(assembly, moving, self._settings.threads)
+            self.loose_part_notes = loose_part_notes(assembly, loose)
+            self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)
         (self._session, self._deformation), self.assembly = opened, assembly
         if self.excluded.pairs:

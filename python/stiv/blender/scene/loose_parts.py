@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Leaves out loose edges and vertices that cut their own object, as only pairs of triangles can be excluded."""
+
+from collections import Counter
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+import stiv
+from stiv.blender.scene.arrays import Flags, Indices
+from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.elements import Element
+
+
+@dataclass(frozen=True)
+class LooseParts:
+    """Loose elements of an assembly.
+
+    Attributes:
+        edges: numbers of loose edges, (k,), ascending.
+        vertices: the vertices, (m,), ascending, that are in no triangle and in no other loose edge.
+    """
+
+    edges: Indices
+    vertices: Indices
+
+
+def find_cutting_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
+    """The loose edges and vertices that cut only faces of their own object, or of objects `together` with it."""
+    surface = assembly.surface
+    edges, vertices = stiv.find_loose_intersections(assembly.positions, surface, threads=threads)
+    cut_edges = _cutting(edges, assembly.loose_edge, assembly, together)
+    used = np.zeros(surface.vertex_count, np.bool_)
+    used[surface.triangles] = used[np.delete(surface.loose_edges, cut_edges, axis=0)] = True
+    ends = np.union1d(surface.loose_edges[cut_edges], _cutting(vertices, assembly.vertex, assembly, together))
+    return LooseParts(cut_edges, ends[~used[ends]].astype(np.int32))
+
+
+def _cutting(
+    pairs: Indices, element: Callable[[int], Element], assembly: Assembly, together: Collection[str]
+) -> Indices:
+    """The first numbers of pairs with triangles, (k, 2), if all of them are within one object or objects together."""
+    within: dict[int, bool] = {}
+    for number, triangle in pairs.tolist():
+        name, other = element(number).object, assembly.face(triangle).object
+        needs_no_decision = name == other or (name in together and other in together)
+        within[number] = within.get(number, True) and needs_no_decision
+    return np.array(sorted(number for number, is_own in within.items() if is_own), np.int32)
+
+
+def without_loose_parts(assembly: Assembly, parts: LooseParts) -> Assembly:
+    """The assembly without some loose edges. The vertices form bodies of their own, which no object tests."""
+    if not len(parts.edges) and not len(parts.vertices):
+        return assembly
+    tested = np.ones(len(assembly.surface.loose_edges), np.bool_)
+    tested[parts.edges] = False
+    meshes, first = [], 0
+    for mesh in assembly.meshes:
+        own = tested[first : first + len(mesh.loose_edges)]
+        first += len(mesh.loose_edges)
+        meshes.append(replace(mesh, loose_edges=mesh.loose_edges[own], loose_numbers=mesh.loose_numbers[own]))
+    return replace(assembly, meshes=tuple(meshes), surface=_without(assembly.surface, tested, parts.vertices))
+
+
+def _without(old: stiv.Surface, tested: Flags, vertices: Indices) -> stiv.Surface:
+    bodies, vertex_body = list(old.bodies), old.vertex_body.copy()
+    ignored = [(int(a), int(b)) for a, b in old.ignored]
+    for body in np.unique(old.vertex_body[vertices]).tolist():
+        own = vertices[old.vertex_body[vertices] == body]
+        vertex_body[own] = len(bodies)
+        bodies.append(old.bodies[body])
+        ignored += [(number, len(bodies) - 1) for number in range(len(bodies))]
+    return stiv.Surface(
+        old.triangles, old.vertex_count, old.loose_edges[tested], vertex_body, bodies, ignored, old.flip_faces
+    )
+
+
+def loose_part_notes(assembly: Assembly, parts: LooseParts) -> tuple[str, ...]:
+    """A note for each object that has some of the parts: how many are left out."""
+    single = np.setdiff1d(parts.vertices, assembly.surface.loose_edges[parts.edges]).tolist()
+    names = [assembly.loose_edge(edge).object for edge in parts.edges.tolist()]
+    names += [assembly.vertex(vertex).object for vertex in single]
+    return tuple(_note(name, count) for name, count in sorted(Counter(names).items()))
+
+
+def _note(name: str, count: int) -> str:
+    if count == 1:
+        return f"{name}: 1 loose edge or vertex cuts it and is not tested"
+    return f"{name}: {count:,} loose edges or vertices cut it and are not tested"
