@@ -106,6 +106,7 @@ void CollisionQueries::guard_pairs_apart_at(const Positions& accepted, Execution
   if (overlapping == overlapping_) return;
   overlapping_ = overlapping;
   guard_ = std::make_unique<Guard>(without_pairs(context_.surface(), overlap_->pairs(), overlapping_), context_);
+  intersecting_ = {};
 }
 
 std::optional<Events> CollisionQueries::find(const Positions& from, const Positions& to, PairLimit limit,
@@ -217,8 +218,19 @@ bool CollisionQueries::passes_static_test(const Positions& from, const Positions
   StaticPairs found = guard_->intersections.find_all(end, execution);
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces);
-  if (!found.empty() || all.size() > guard_->intersections.find(start_.with_rest(from), execution).size()) return false;
-  return !depth_->is_deeper(end, all);
+  if (!found.empty()) return false;
+  const IndexPairs& before = intersecting_at(from, execution);
+  if (excluded_.are_more(all, before, start_.with_rest(from)) || depth_->is_deeper(end, all)) return false;
+  intersecting_ = {to, all};
+  return true;
+}
+
+/// The pairs of triangles, excluded ones, that intersect at an accepted surface.
+const IndexPairs& CollisionQueries::intersecting_at(const Positions& accepted, Execution& execution) {
+  const Positions& known = intersecting_.surface;
+  if (known.rows() != accepted.rows() || known != accepted)
+    intersecting_ = {accepted, guard_->intersections.find(start_.with_rest(accepted), execution)};
+  return intersecting_.pairs;
 }
 
 bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution) {

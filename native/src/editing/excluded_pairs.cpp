@@ -58,7 +58,9 @@ struct PlacedTriangles {
 
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
                              const PositionsView& start, double least)
-    : surface_(std::move(surface)), pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
+    : surface_(std::move(surface)),
+      least_(least),
+      pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
   if (pairs_.empty()) return;
   around_.resize(static_cast<std::size_t>(surface_->vertex_count()));
   const Triangles& triangles = surface_->triangles();
@@ -68,12 +70,12 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
-  add_touching(start, least);
+  add_touching(start);
 }
 
-void ExcludedPairs::add_touching(const PositionsView& start, double least) {
+void ExcludedPairs::add_touching(const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
-  const double reach = least * least;
+  const double reach = least_ * least_;
   IndexPairs near;
   for (const auto& [a, b] : pairs_) {
     const std::vector<Index> others = with_neighbors(b);
@@ -87,7 +89,7 @@ void ExcludedPairs::add_touching(const PositionsView& start, double least) {
   near.erase(std::unique(near.begin(), near.end()), near.end());
   std::erase_if(near, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return contains(a, b) || placed.share_a_corner(a, b) || !placed.touch(a, b, least);
+    return contains(a, b) || placed.share_a_corner(a, b) || !placed.touch(a, b, least_);
   });
   const auto given = static_cast<std::ptrdiff_t>(pairs_.size());
   pairs_.insert(pairs_.end(), near.begin(), near.end());
@@ -139,6 +141,16 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs) const {
   IndexPairs left;
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
   return left;
+}
+
+bool ExcludedPairs::are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const {
+  if (now.size() <= before.size()) return false;
+  const PlacedTriangles placed{surface_->triangles(), from};
+  IndexPairs added;
+  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(added));
+  const auto touched = std::count_if(added.begin(), added.end(),
+                                     [&](const auto& pair) { return placed.touch(pair.first, pair.second, least_); });
+  return now.size() - static_cast<std::size_t>(touched) > before.size();
 }
 
 }  // namespace stiv

@@ -32,14 +32,21 @@ class ExcludedPairs {
   /// The pairs, sorted and with the smaller index first, that are not excluded.
   IndexPairs others(const IndexPairs& pairs) const;
 
+  /// Whether more pairs intersect than before. Those that touched before are not counted: rounding decides whether they
+  /// intersect.
+  /// @param before the pairs that intersected at `from`, sorted like `now`
+  /// @param from of all vertices
+  bool are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const;
+
  private:
-  void add_touching(const PositionsView& start, double least);
+  void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   bool contains(Index a, Index b) const;
   bool covers(const Event& event) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
   std::shared_ptr<const Surface> surface_;
+  double least_;
   IndexPairs pairs_;
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
 };
