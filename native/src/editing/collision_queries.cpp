@@ -50,7 +50,7 @@ CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const Edi
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
 }
 
-CollisionQueries::CollisionQueries(const EditContext& context)
+CollisionQueries::CollisionQueries(const EditContext& context, Execution& execution)
     : context_(context),
       start_(context.obstacles()),
       end_(context.obstacles()),
@@ -58,7 +58,7 @@ CollisionQueries::CollisionQueries(const EditContext& context)
       centred_end_(context.centred_obstacles()),
       guard_(std::make_unique<Guard>(context.shared_surface(), context)),
       excluded_(context.shared_surface(), context.options().excluded, *context.proximity().reference,
-                context.least_separation()),
+                context.least_separation(), execution),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
   if (!excluded_.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());
@@ -77,7 +77,7 @@ void CollisionQueries::check_start(const Positions& surface, Execution& executio
   guard_pairs_apart_at(surface, execution);
   StaticPairs found = guard_->intersections.find_all(q, execution);
   if (depth_ && !depth_->begun()) depth_->begin(q, found.faces);
-  found.faces = excluded_.others(found.faces);
+  found.faces = excluded_.others(found.faces, q);
   if (!found.empty()) {
     const std::string message = describe(context_.surface(), found);
     throw StartIntersectsError(message, std::move(found.faces));
@@ -161,7 +161,11 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Candidate
   {
     const ScopedTimer timer(execution.timings.detection);
     events = guard_->cache.find(place, context_.round_proximity(), execution);
-    excluded_.remove_from(events);
+    excluded_.remove_from(events, [&](Index vertex) -> Vector3 {
+      const auto own = static_cast<Index>(to.surface.rows());
+      if (vertex < own) return to.surface.row(vertex);
+      return context_.obstacles().row(vertex - own);
+    });
   }
   execution.timings.detection -= placing;
   execution.timings.deformation += placing;
@@ -182,7 +186,7 @@ std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, co
   std::optional<Events> events = limit == PairLimit::ignored
                                      ? detector.find(from, to, proximity, execution)
                                      : detector.find_within_pair_limit(from, to, proximity, execution);
-  if (events) excluded_.remove_from(*events);
+  if (events) excluded_.remove_from(*events, [&](Index vertex) -> Vector3 { return to.row(vertex); });
   return events;
 }
 
@@ -217,7 +221,7 @@ bool CollisionQueries::passes_static_test(const Positions& from, const Positions
   if (excluded_.empty()) return guard_->intersections.is_free(end, moved(from, to, execution), execution);
   StaticPairs found = guard_->intersections.find_all(end, execution);
   const IndexPairs all = found.faces;
-  found.faces = excluded_.others(found.faces);
+  found.faces = excluded_.others(found.faces, end);
   if (!found.empty()) return false;
   const IndexPairs& before = intersecting_at(from, execution);
   if (excluded_.are_more(all, before, start_.with_rest(from)) || depth_->is_deeper(end, all)) return false;

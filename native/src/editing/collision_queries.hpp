@@ -26,7 +26,7 @@ enum class CandidateRows { placed, to_be_placed };
 class CollisionQueries {
  public:
   /// The context must outlive the queries.
-  explicit CollisionQueries(const EditContext& context);
+  CollisionQueries(const EditContext& context, Execution& execution);
   CollisionQueries(const CollisionQueries&) = delete;
   CollisionQueries& operator=(const CollisionQueries&) = delete;
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "acceptance/clearance/triangle_distance.hpp"
+#include "editing/touching_pairs.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -24,6 +25,10 @@ IndexPairs checked(const IndexPairs& pairs, Index triangle_count) {
   std::sort(ordered.begin(), ordered.end());
   ordered.erase(std::unique(ordered.begin(), ordered.end()), ordered.end());
   return ordered;
+}
+
+bool is_among(const IndexPairs& pairs, Index a, Index b) {
+  return std::binary_search(pairs.begin(), pairs.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
 /// The triangles of a surface at rest.
@@ -57,8 +62,9 @@ struct PlacedTriangles {
 }  // namespace
 
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
-                             const PositionsView& start, double least)
+                             const PositionsView& start, double least, Execution& execution)
     : surface_(std::move(surface)),
+      start_(start),
       least_(least),
       pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
   if (pairs_.empty()) return;
@@ -70,11 +76,13 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
-  add_touching(start);
+  bodies_ = bodies_of_pairs();
+  add_touching();
+  find_others_that_touch(execution);
 }
 
-void ExcludedPairs::add_touching(const PositionsView& start) {
-  const PlacedTriangles placed{surface_->triangles(), start};
+void ExcludedPairs::add_touching() {
+  const PlacedTriangles placed{surface_->triangles(), start_};
   const double reach = least_ * least_;
   IndexPairs near;
   for (const auto& [a, b] : pairs_) {
@@ -108,8 +116,22 @@ std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
   return found;
 }
 
-bool ExcludedPairs::contains(Index a, Index b) const {
-  return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(std::min(a, b), std::max(a, b)));
+bool ExcludedPairs::contains(Index a, Index b) const { return is_among(pairs_, a, b); }
+
+void ExcludedPairs::find_others_that_touch(Execution& execution) {
+  const IndexPairs found = find_touching(surface_, bodies_, start_, rounding(), execution);
+  std::set_difference(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(touching_));
+  std::merge(pairs_.begin(), pairs_.end(), touching_.begin(), touching_.end(), std::back_inserter(all_));
+}
+
+/// Pairs of bodies, smaller index first, sorted.
+IndexPairs ExcludedPairs::bodies_of_pairs() const {
+  const auto body = [&](Index triangle) { return surface_->body_of(surface_->triangles()(triangle, 0)); };
+  IndexPairs bodies;
+  for (const auto& [a, b] : pairs_) bodies.push_back(std::minmax(body(a), body(b)));
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
 }
 
 std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index* end) const {
@@ -121,36 +143,56 @@ std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index
   return common;
 }
 
-bool ExcludedPairs::covers(const Event& event) const {
+bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index)>& end) const {
   const Index *const begin = event.vertices.data(), *const split = begin + first_side_size(event.kind);
-  const std::vector<Index> first = triangles_with(begin, split);
-  if (first.empty()) return false;  // a loose edge or vertex
-  const std::vector<Index> second = triangles_with(split, begin + event.vertices.size());
-  if (second.empty()) return false;
+  const std::vector<Index> first = triangles_with(begin, split),
+                           second = triangles_with(split, begin + event.vertices.size());
+  const auto touch_at = [&](const std::function<Vector3(Index)>& position) {
+    return primitive_distance(event, position) < rounding();
+  };
+  if (first.empty() || second.empty()) {  // a loose edge or vertex
+    const std::pair<Index, Index> bodies = std::minmax(surface_->body_of(*begin), surface_->body_of(*split));
+    return std::binary_search(bodies_.begin(), bodies_.end(), bodies) &&
+           touch_at([&](Index vertex) -> Vector3 { return start_.row(vertex); }) && touch_at(end);
+  }
+  bool touch = false;
   for (const Index a : first)
-    for (const Index b : second)
-      if (!contains(a, b)) return false;
-  return true;
+    for (const Index b : second) {
+      if (contains(a, b)) continue;
+      if (!is_among(touching_, a, b)) return false;
+      touch = true;
+    }
+  return !touch || touch_at(end);
 }
 
-void ExcludedPairs::remove_from(Events& events) const {
-  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event); });
+void ExcludedPairs::remove_from(Events& events, const std::function<Vector3(Index)>& end) const {
+  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, end); });
 }
 
-IndexPairs ExcludedPairs::others(const IndexPairs& pairs) const {
+IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q) const {
+  const PlacedTriangles placed{surface_->triangles(), q};
   IndexPairs left;
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
+  std::erase_if(left, [&](const auto& pair) {
+    const auto& [a, b] = pair;
+    return is_among(touching_, a, b) && intersection_depth(placed.corners(a), placed.corners(b), q) < rounding();
+  });
   return left;
 }
 
 bool ExcludedPairs::are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const {
-  if (now.size() <= before.size()) return false;
   const PlacedTriangles placed{surface_->triangles(), from};
-  IndexPairs added;
-  std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(added));
-  const auto touched = std::count_if(added.begin(), added.end(),
-                                     [&](const auto& pair) { return placed.touch(pair.first, pair.second, least_); });
-  return now.size() - static_cast<std::size_t>(touched) > before.size();
+  const auto count_only_in = [&](const IndexPairs& these, const IndexPairs& those, const auto& counts) {
+    IndexPairs only;
+    std::set_difference(these.begin(), these.end(), those.begin(), those.end(), std::back_inserter(only));
+    return std::count_if(only.begin(), only.end(), [&](const auto& pair) {
+      return !is_among(touching_, pair.first, pair.second) && counts(pair);
+    });
+  };
+  const auto ended = count_only_in(before, now, [](const auto&) { return true; });
+  const auto begun =
+      count_only_in(now, before, [&](const auto& pair) { return !placed.touch(pair.first, pair.second, rounding()); });
+  return begun > ended;
 }
 
 }  // namespace stiv

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,27 +11,31 @@
 
 namespace stiv {
 
-/// Pairs of triangles that may intersect: the given ones, and pairs next to them that touch. An event belongs to every
-/// pair of a triangle at its first side and one at its second. It is ignored only if each of these pairs is excluded,
-/// so that all other pairs stay guarded. (mathematics.md, "Excluded pairs")
+/// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
+/// bodies that touch, which may intersect no deeper than rounding. An event belongs to every pair of a triangle at its
+/// first side and one at its second. It is ignored only if each of these pairs is excluded, so that all other pairs
+/// stay guarded. (mathematics.md, "Excluded pairs")
 class ExcludedPairs {
  public:
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
   /// storing. Where a curve of intersection passes an edge so closely, it cannot be kept on its side of the edge. Only
-  /// neighbors of the triangles of a given pair are added, and never a pair that intersects at the start.
-  /// @param start of the surface's vertices that are not those of obstacles
+  /// neighbors of the triangles of a given pair may intersect deeper. No pair that intersects at the start is added.
+  /// @param start of all vertices; must outlive this
   /// @throws InputError: a triangle out of range, or a triangle with itself
   ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, const PositionsView& start,
-                double least);
+                double least, Execution& execution);
 
   bool empty() const { return pairs_.empty(); }
-  const IndexPairs& pairs() const { return pairs_; }  ///< sorted, with the smaller index first
+  const IndexPairs& pairs() const { return all_; }  ///< sorted, with the smaller index first
 
-  /// Removes the events that belong only to excluded pairs.
-  void remove_from(Events& events) const;
+  /// Removes the events that belong only to excluded pairs. Those of pairs that touch stay if their primitives are
+  /// further apart than rounding at the end of the step: they have passed through each other. So do those of loose
+  /// edges and vertices that touched at the start.
+  /// @param end position of a vertex at the end of the step
+  void remove_from(Events& events, const std::function<Vector3(Index)>& end) const;
 
-  /// The pairs, sorted and with the smaller index first, that are not excluded.
-  IndexPairs others(const IndexPairs& pairs) const;
+  /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q.
+  IndexPairs others(const IndexPairs& pairs, const PositionsView& q) const;
 
   /// Whether more pairs intersect than before. Those that touched before are not counted: rounding decides whether they
   /// intersect.
@@ -39,15 +44,23 @@ class ExcludedPairs {
   bool are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const;
 
  private:
-  void add_touching(const PositionsView& start);
+  /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
+  double rounding() const { return 4 * least_; }
+  void add_touching();
   std::vector<Index> with_neighbors(Index triangle) const;
+  void find_others_that_touch(Execution& execution);
+  IndexPairs bodies_of_pairs() const;
   bool contains(Index a, Index b) const;
-  bool covers(const Event& event) const;
+  bool covers(const Event& event, const std::function<Vector3(Index)>& end) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
   std::shared_ptr<const Surface> surface_;
+  PositionsView start_;
   double least_;
-  IndexPairs pairs_;
+  IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
+  IndexPairs pairs_;                        // without limits
+  IndexPairs touching_;                     // other pairs
+  IndexPairs all_;                          // both
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
 };
 

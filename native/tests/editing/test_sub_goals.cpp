@@ -15,8 +15,8 @@ namespace {
 /// A path of heights of the upper sheet, cut at the state closest to a goal at `goal_height`.
 std::vector<Controls> best_path(const Scene& scene, const std::vector<double>& heights, double goal_height) {
   const EditContext context(scene.surface, Positions(0, 3), scene.deformation, scene.controls, {}, Execution(1));
-  CollisionQueries queries(context);
   Execution execution(1);
+  CollisionQueries queries(context, execution);
   const auto at = [&](double height) { return moved(scene.controls, upper_sheet, Vector3(0, 0, height)); };
   EditReport report;
   for (const double height : heights) report.path.push_back(at(height));

@@ -148,6 +148,16 @@ class IntersectionTest::Implementation {
     return found;
   }
 
+  IndexPairs find_near(const PositionsView& q, const Execution& execution) {
+    check_positions(q, execution);
+    near_->begin(q, {}, execution);
+    update({&triangles_}, q, {}, execution);
+    std::vector<CornerPair> listed;
+    find_among(triangles_, q, listed, execution);
+    for (const Index vertex : stars_->find_open(proofs_, {})) append_star(vertex, listed);
+    return numbered(listed);
+  }
+
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
     check_positions(q, execution);
     NearPairList::Found listed;
@@ -199,6 +209,34 @@ class IntersectionTest::Implementation {
   IndexPairs numbered(IndexPairs pairs) const {
     for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
     return pairs;
+  }
+
+  /// Appends the pairs of triangles around a vertex with a link, of which searches leave out those that are free.
+  void append_star(Index vertex, std::vector<CornerPair>& pairs) const {
+    const std::span<const Index> link = stars_->link(vertex);
+    for (std::size_t a = 1; a < link.size(); ++a)
+      for (std::size_t b = 1; b < a; ++b)
+        pairs.push_back({{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}});
+  }
+
+  /// Numbers of the triangles of pairs, sorted.
+  IndexPairs numbered(const std::vector<CornerPair>& pairs) const {
+    const auto sorted = [](std::array<Index, 3> corners) {
+      std::sort(corners.begin(), corners.end());
+      return corners;
+    };
+    std::vector<std::pair<std::array<Index, 3>, Index>> triangles;
+    for (const auto& corners : triangles_.all_corners())
+      triangles.emplace_back(sorted(corners), static_cast<Index>(triangles.size()));
+    std::sort(triangles.begin(), triangles.end());
+    const auto number = [&](const std::array<Index, 3>& corners) {
+      return std::lower_bound(triangles.begin(), triangles.end(), std::pair(sorted(corners), Index{0}))->second;
+    };
+    IndexPairs found;
+    for (const auto& [first, second] : pairs) found.push_back(std::minmax(number(first), number(second)));
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
   }
 
   void check_positions(const PositionsView& q, const Execution& execution) const {
@@ -265,6 +303,11 @@ IndexPairs IntersectionTest::find_loose_vertices(const PositionsView& q, Executi
 StaticPairs IntersectionTest::find_all(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find_all(q, execution);
+}
+
+IndexPairs IntersectionTest::find_near(const PositionsView& q, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_near(q, execution);
 }
 
 bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {

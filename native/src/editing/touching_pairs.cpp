@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "editing/touching_pairs.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "acceptance/clearance/triangle_distance.hpp"
+
+namespace stiv {
+
+namespace {
+
+using Corners = std::array<Index, 3>;
+
+Corners corners_of(const Surface& surface, Index triangle) {
+  const Triangles& triangles = surface.triangles();
+  return {triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
+}
+
+bool has(const Corners& triangle, Index corner) {
+  return std::find(triangle.begin(), triangle.end(), corner) != triangle.end();
+}
+
+/// The triangle with its corners that another one has at its end. Returns how many these are.
+std::ptrdiff_t put_shared_last(Corners& triangle, const Corners& other) {
+  const auto shared =
+      std::partition(triangle.begin(), triangle.end(), [&](Index corner) { return !has(other, corner); });
+  return triangle.end() - shared;
+}
+
+/// The distance of two triangles that do not intersect; of triangles with common corners, that of the sides and corners
+/// that are not common.
+double distance_apart(Corners a, Corners b, const PositionsView& q) {
+  const auto distance = [&](const Corners& first, const Corners& second) {
+    return triangle_distance(first, second, q).distance;
+  };
+  const std::ptrdiff_t shared = put_shared_last(a, b);
+  put_shared_last(b, a);
+  if (shared == 0) return distance(a, b);
+  if (shared == 1) return std::min(distance({a[0], a[1], a[1]}, b), distance(a, {b[0], b[1], b[1]}));
+  const double to_corners = std::min(distance({a[0], a[0], a[0]}, b), distance(a, {b[0], b[0], b[0]}));
+  const Index v = a[1], w = a[2];  // sides that meet in no corner
+  return std::min({to_corners, distance({v, a[0], a[0]}, {w, b[0], b[0]}), distance({w, a[0], a[0]}, {v, b[0], b[0]})});
+}
+
+/// The motion along an axis that parts two triangles; infinite if the axis has no direction.
+double parting_motion(const Vector3& axis, const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b) {
+  const double length = axis.norm();
+  if (!(length > 0)) return std::numeric_limits<double>::infinity();
+  const auto range = [&](const std::array<Vector3, 3>& triangle) {
+    const std::array<double, 3> along{axis.dot(triangle[0]), axis.dot(triangle[1]), axis.dot(triangle[2])};
+    return std::minmax({along[0], along[1], along[2]});
+  };
+  const auto [low_a, high_a] = range(a);
+  const auto [low_b, high_b] = range(b);
+  return std::max(0.0, std::min(high_a - low_b, high_b - low_a)) / length;
+}
+
+}  // namespace
+
+IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
+                         const PositionsView& q, double distance, Execution& execution) {
+  IndexPairs near = IntersectionTest(surface, {.lists_near_pairs = true}).find_near(q, execution);
+  std::vector<unsigned char> touch(near.size(), 0);
+  execution.for_chunks(static_cast<Index>(near.size()), 256, [&](Index begin, Index end, Index) {
+    for (Index k = begin; k < end; ++k) {
+      const Corners a = corners_of(*surface, near[at(k)].first), b = corners_of(*surface, near[at(k)].second);
+      const std::pair<Index, Index> pair = std::minmax(surface->body_of(a[0]), surface->body_of(b[0]));
+      touch[at(k)] = std::binary_search(bodies.begin(), bodies.end(), pair) && distance_apart(a, b, q) < distance &&
+                     !triangles_intersect(a, b, q);
+    }
+  });
+  IndexPairs found;
+  for (std::size_t k = 0; k < near.size(); ++k)
+    if (touch[k] != 0) found.push_back(near[k]);
+  return found;
+}
+
+double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                          const PositionsView& q) {
+  const Vector3 origin = q.row(first[0]);  // rounding then scales with the pair, not with the scene
+  std::array<Vector3, 3> a, b, sides_of_a, sides_of_b;
+  for (std::size_t k = 0; k < 3; ++k) {
+    a[k] = q.row(first[k]).transpose() - origin;
+    b[k] = q.row(second[k]).transpose() - origin;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    sides_of_a[k] = a[(k + 1) % 3] - a[k];
+    sides_of_b[k] = b[(k + 1) % 3] - b[k];
+  }
+  const Vector3 normal_of_a = sides_of_a[0].cross(sides_of_a[1]), normal_of_b = sides_of_b[0].cross(sides_of_b[1]);
+  double depth = std::min(parting_motion(normal_of_a, a, b), parting_motion(normal_of_b, a, b));
+  for (std::size_t i = 0; i < 3; ++i) {
+    depth = std::min(depth, parting_motion(normal_of_a.cross(sides_of_a[i]), a, b));
+    depth = std::min(depth, parting_motion(normal_of_b.cross(sides_of_b[i]), a, b));
+    for (std::size_t j = 0; j < 3; ++j)
+      depth = std::min(depth, parting_motion(sides_of_a[i].cross(sides_of_b[j]), a, b));
+  }
+  return depth;
+}
+
+double primitive_distance(const Event& event, const std::function<Vector3(Index)>& position) {
+  Positions corners(4, 3);
+  for (Index k = 0; k < 4; ++k) corners.row(k) = position(event.vertices[at(k)]).transpose();
+  if (event.kind == EventKind::vertex_face) return triangle_distance({0, 0, 0}, {1, 2, 3}, corners).distance;
+  return triangle_distance({0, 1, 1}, {2, 3, 3}, corners).distance;
+}
+
+}  // namespace stiv
