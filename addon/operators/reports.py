@@ -39,11 +39,12 @@ def write_failure(report: stiv_blender.WriteReport | None) -> str:
 
 
 def left_out_text(context: bpy.types.Context, edit: stiv_blender.Edit, *notes: str) -> str:
-    """The message on exceptions from the guarantee: faces at joints, and objects that the next frame resets; and notes
-    of the start.
+    """The message on exceptions from the guarantee: faces at joints and torn seams, and objects that the next frame
+    resets; and notes of the start.
     """
     reset_note = "" if context.scene.tool_settings.use_keyframe_insert_auto else edit.reset_note
-    return "; ".join(map(translate_error, filter(None, (edit.fold_note, reset_note, *notes))))
+    found = (edit.fold_note, edit.torn_seam_note, reset_note, *notes)
+    return "; ".join(map(translate_error, filter(None, found)))
 
 
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: str = "") -> None:

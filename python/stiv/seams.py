@@ -50,6 +50,20 @@ class Seams:
         np.minimum.at(first, self.index[included], own[included])
         return Seams.of(np.where(included, first[self.index], own).astype(np.int32))
 
+    def limited_to_equal(self, values: NDArray[np.floating], tolerance: float) -> Seams | None:
+        """The seams among vertices whose values, (n, ...), differ by at most a tolerance; a seam may be divided."""
+        own = np.arange(len(self.index), dtype=np.int32)
+        leaders, waiting = own.copy(), np.flatnonzero(np.bincount(self.index)[self.index] > 1)
+        while len(waiting):  # the first copy takes those equal to it; then the next one, those that are left
+            first = np.full(len(self.first), len(own), np.int32)
+            np.minimum.at(first, self.index[waiting], own[waiting])
+            chosen = first[self.index[waiting]]
+            apart = np.abs(values[waiting] - values[chosen]).reshape(len(waiting), -1)
+            equal = (apart <= tolerance).all(axis=1) | (chosen == waiting)
+            leaders[waiting[equal]] = chosen[equal]
+            waiting = waiting[~equal]
+        return Seams.of(leaders)
+
 
 def common_seams(one: Seams | None, other: Seams | None) -> Seams | None:
     """The seams that two shapes of the same mesh have in common."""

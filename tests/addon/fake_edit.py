@@ -71,7 +71,7 @@ class FakeEdit:
     touching: bool = False
     busy: bool = False
     start_digest = "start"
-    fold_note = reset_note = passenger_note = ""
+    fold_note = torn_seam_note = reset_note = passenger_note = ""
     controls = ()
 
     @property

@@ -121,3 +121,12 @@ def test_contacts_along_edges_differ_from_intersections(other, expected, scale):
     assert stiv.find_intersections(q, triangles).tolist() == [[0, 1]]
     for turned in ([0, 1, 2, 3, 4, 5], [1, 2, 0, 5, 4, 3], [3, 4, 5, 2, 1, 0]):
         assert edge_contacts(q[turned], triangles, np.array([[0, 1]])).tolist() == [expected]
+
+
+def test_seams_are_divided_where_values_differ() -> None:
+    """Copies that remain together form seams of their own; values that are not numbers equal nothing."""
+    seams = Seams.of(np.array([0, 0, 0, 0, 4, 4, 6], np.int32))
+    values = np.array([[0.0, 0], [1, 0], [0.05, 0], [1.05, 0], [2, 2], [2, np.nan], [0, 0]])
+    assert seams.limited_to_equal(values, 0.1).leaders.tolist() == [0, 1, 0, 1, 4, 5, 6]
+    assert seams.limited_to_equal(values, 0.01) is None
+    assert seams.limited_to_equal(np.zeros((7, 3, 2)), 0.0).leaders.tolist() == seams.leaders.tolist()

@@ -67,7 +67,7 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         values = {key: value for (_, key), value in found.values.items()}
         described = {"status": found.status, "blocking": found.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
-        for note in found.start_notes:
+        for note in filter(None, (*found.start_notes, found.torn_seam_note)):
             self.report({"WARNING"}, translate_error(note))
         if text := result_text(found.status, found.blocking, translate):
             say(self, "INFO", text)

@@ -134,7 +134,8 @@ class STIV_OT_morph_drag(NeedsNativeModule, bpy.types.Operator):
             return {"CANCELLED"}
         rows = [{"name": name, "value": value} for name, value in goals.items()]
         values = {(self._object, key): value for key, value in self._values().items()}
-        result = stiv_blender.MorphReport(found.status, values, tuple(found.blocking))
+        note = self._edit.torn_seam_note
+        result = stiv_blender.MorphReport(found.status, values, tuple(found.blocking), torn_seam_note=note)
         try:
             register_drag(result, keys=rows, others_yield=self._state.others_yield)
         except RuntimeError as error:

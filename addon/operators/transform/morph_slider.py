@@ -10,6 +10,7 @@ import bpy
 
 from ... import stiv_blender
 from ...scene.edit_settings import edit_settings
+from ...translations import translate_error
 from ..reports import error_text
 
 BUDGET = 0.1  # seconds of a solve: the field waits for it
@@ -51,6 +52,8 @@ def set_value(self: bpy.types.PropertyGroup, value: float) -> None:
         context.window_manager.stiv_check.summary = error_text(error)
         return
     edit.insert_keyframes(context)
+    if edit.torn_seam_note:
+        context.window_manager.stiv_check.summary = translate_error(edit.torn_seam_note)
     _dragged = _Dragged(ob.name, ob.active_shape_key.name, edit, time.monotonic())
 
 

@@ -145,6 +145,7 @@ MESSAGES = {
     '{} depends on "{}"; select both': "{}依赖于“{}”；请同时选择两者",
     "{} faces at joints cut into each other": "关节处的 {} 个面相互切入",
     "{} faces at joints may fold into each other": "关节处的 {} 个面可以相互折叠",
+    "{} faces at torn seams cut each other; use Merge by Distance": "开裂接缝处的 {} 个面相交；请使用“按距离合并”",
     "{} has a coordinate that is not finite; change it": "{} 有非有限坐标；请更改",
     "{} has another active shape key": "{} 的活动形态键已改变",
     "{} has left {} Mode": "{} 已离开 {} 模式",

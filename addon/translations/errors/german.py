@@ -145,6 +145,7 @@ MESSAGES = {
     '{} depends on "{}"; select both': '{} hängt von "{}" ab; beide auswählen',
     "{} faces at joints cut into each other": "{} Flächen an Gelenken schneiden ineinander",
     "{} faces at joints may fold into each other": "{} Flächen an Gelenken dürfen sich ineinander falten",
+    "{} faces at torn seams cut each other; use Merge by Distance": "{} Flächen an offenen Nähten schneiden einander; Nach Abstand zusammenführen",
     "{} has a coordinate that is not finite; change it": "{} hat eine nicht endliche Koordinate; ändern",
     "{} has another active shape key": "{} hat einen anderen aktiven Formschlüssel",
     "{} has left {} Mode": "{} hat den Modus {} verlassen",

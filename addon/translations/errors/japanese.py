@@ -145,6 +145,7 @@ MESSAGES = {
     '{} depends on "{}"; select both': "{} が「{}」に依存しています。両方を選択してください",
     "{} faces at joints cut into each other": "関節の {} 面が互いに食い込んでいます",
     "{} faces at joints may fold into each other": "関節の {} 面は互いに折り重なることがあります",
+    "{} faces at torn seams cut each other; use Merge by Distance": "開いたシームの {} 面が互いに交差しています。「距離でマージ」を使ってください",
     "{} has a coordinate that is not finite; change it": "{} に有限でない座標があります。変更してください",
     "{} has another active shape key": "{} のアクティブなシェイプキーが変わりました",
     "{} has left {} Mode": "{} は {} モードを終了しました",

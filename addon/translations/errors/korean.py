@@ -145,6 +145,7 @@ MESSAGES = {
     '{} depends on "{}"; select both': '{}이(가) "{}"에 의존함; 둘 다 선택하세요',
     "{} faces at joints cut into each other": "관절의 면 {}개가 서로 파고듦",
     "{} faces at joints may fold into each other": "관절의 면 {}개는 서로 접힐 수 있음",
+    "{} faces at torn seams cut each other; use Merge by Distance": "벌어진 이음매의 면 {}개가 서로 교차함; 거리로 병합을 사용하세요",
     "{} has a coordinate that is not finite; change it": "{}에 유한하지 않은 좌표가 있음; 바꾸세요",
     "{} has another active shape key": "{}의 활성 셰이프 키가 바뀜",
     "{} has left {} Mode": "{}이(가) {} 모드를 나감",

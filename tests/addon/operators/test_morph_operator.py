@@ -98,3 +98,22 @@ def test_drags_of_several_keys_show_only_clear_values(ball: Any) -> None:
         assert max(edit.values) > 0.2
         edit.restore()
         assert value(ball, "Wide") == value(ball, "Thin") == 0
+
+
+def test_faces_that_cut_at_a_seam_torn_by_the_slider_are_named() -> None:
+    """Two squares side by side, of which a key moves one across the other."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    places = [(x + side, y, 0) for side in (-1, 0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    data = bpy.data.meshes.new("Sheet")
+    data.from_pydata(places, [], [range(4), range(4, 8)])
+    sheet = bpy.data.objects.new("Sheet", data)
+    bpy.context.collection.objects.link(sheet)
+    bpy.context.view_layer.objects.active = sheet
+    sheet.shape_key_add(name="Basis")
+    key = sheet.shape_key_add(name="Cross")
+    key.value = 0
+    key.data[4].co, key.data[7].co = (-0.5, 0, -0.5), (-0.5, 1, 0.5)
+    sheet.active_shape_key_index = 1
+    sheet.stiv.morph_value = 0.9
+    text = "Sheet: 2 faces at torn seams cut each other; use Merge by Distance"
+    assert bpy.context.window_manager.stiv_check.summary == text

@@ -54,7 +54,7 @@ class RecordingEdit:
     begun: Any = None
     summary = SimpleNamespace(warnings=())
     start_notes = ()
-    fold_note = reset_note = passenger_note = ""
+    fold_note = torn_seam_note = reset_note = passenger_note = ""
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()
     failing: Exception | None = None

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import bpy
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from building import add_cube, add_grid
 
 from stiv.blender.controls.joint_regions import Joint, Regions, Skin, divide, divide_all
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
+from stiv.seams import find_seams
 
 FIRST = Joint(np.array([-2.0, 0, 0]), frozenset({"B", "C"}))
 SECOND = Joint(np.array([2.0, 0, 0]), frozenset({"C"}))
@@ -58,6 +61,24 @@ def test_regions_grow_with_their_radius_and_vanish_at_0() -> None:
     assert divide(skin, [FIRST], 0.0).parts == (skin.mesh,)
     yielding = Joint(FIRST.head, FIRST.bones, yields=True)
     assert divide(skin, [yielding], 2.5).faces == sizes[2]
+
+
+def test_copies_on_closed_seams_do_not_change_the_parts() -> None:
+    """Each quad has vertices of its own; as one surface, the strip has the parts of the strip without copies."""
+    skin = strip()
+    mesh, order = skin.mesh, np.unique(np.stack([skin.mesh.triangles.ravel(), np.repeat(skin.mesh.faces, 3)]), axis=1)
+    vertex, face = order
+    place = {tuple(key): number for number, key in enumerate(order.T.tolist())}
+    corners = np.array([
+        [place[corner, owner] for corner in row]
+        for row, owner in zip(mesh.triangles.tolist(), mesh.faces.tolist(), strict=True)
+    ], np.int32)  # fmt: skip
+    split = replace(mesh, local=mesh.local[vertex], triangles=corners)
+    seams = find_seams(split.local, corners)
+    assert len(face) == len(split.local) == 4 * 48 * 48 and seams is not None
+    regions = divide(Skin(split, skin.groups, skin.weights[vertex], seams), [FIRST, SECOND], 2.5)
+    assert faces_of(regions) == faces_of(expected := divide(skin, [FIRST, SECOND], 2.5))
+    assert (regions.untested, regions.joints) == (expected.untested, expected.joints)
 
 
 def test_a_mesh_that_bends_without_weights_is_not_tested_against_itself() -> None:

@@ -87,7 +87,7 @@ def make_bone_set(
     names, start, writer = tuple(rig.name for rig in rigs), as_controls(posed.start), BoneWriter(scalars, MOVED[kind])
     bare = ControlSet(
         names, "bones", posed.surfaces, posed.deformation, start, weights, weights, None, BoneGoal(scalars), writer,
-        note=posed.note, posed=posed,
+        seams=posed.seams, note=posed.note, posed=posed,
     )  # fmt: skip
     return dressed(bare, [each.controls for each in garments]) if garments else bare
 

@@ -213,7 +213,9 @@ def _check_children(deformed: set[str], in_groups: set[str], meshes: Sequence[Vi
 def _check_surface(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> None:
     """Refuse a control set whose surface differs from Blender's evaluation."""
     computed: Floats = control_set.deformation.surface(control_set.controls)
-    shown = [meshes[index].world() for index in control_set.surfaces]
+    seams = control_set.seams or (None,) * len(control_set.surfaces)
+    worlds = [meshes[index].world() for index in control_set.surfaces]
+    shown = [world if each is None else world[each.first] for world, each in zip(worlds, seams, strict=True)]
     counts = [len(each) for each in shown]
     if sum(counts) != len(computed):
         _refuse_difference(

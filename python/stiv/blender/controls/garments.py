@@ -15,6 +15,7 @@ from stiv import InputError
 from stiv.blender.controls.cage import make_cage_set
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs, Writer
 from stiv.blender.controls.handles import make_handle_sets
+from stiv.blender.controls.joined_seams import followed_controls, join_controls
 from stiv.blender.controls.lattice_points import check_lattice, make_lattice_set
 from stiv.blender.controls.stack_jacobian import PROBE, find_frames
 from stiv.blender.controls.subdivision import identity_weights
@@ -118,15 +119,15 @@ def _mesh(
     if participant.role == "soft":
         handles = make_handle_sets(participant, surfaces, shown, context.scene, settings)
         return [Garment(each, None) for each in handles]
-    cage = make_cage_set(participant, surfaces, shown, context.scene, settings)
-    if cage.observed is None:
-        return [Garment(cage, _known_weights(cage))]
-    followed = cage.observed.followed
-    counts = np.diff(followed.indptr)
-    return [Garment(cage, replace(followed, data=followed.data / np.repeat(np.maximum(counts, 1), counts)))]
+    cage = join_controls(make_cage_set(participant, surfaces, shown, context.scene, settings), meshes)
+    return [Garment(cage, _known_weights(cage))]
 
 
 def _known_weights(cage: ControlSet) -> stiv.Weights:
+    if cage.observed is not None:
+        followed = followed_controls(cage)
+        counts = np.diff(followed.indptr)
+        return replace(followed, data=followed.data / np.repeat(np.maximum(counts, 1), counts))
     try:
         return stiv.linear_weights(cage.deformation)[0]
     except InputError:  # the identity has none

@@ -56,6 +56,27 @@ def join_seams(control_set: ControlSet, meshes: Sequence[VisibleMesh]) -> Contro
     return replace(control_set, deformation=_restrict(control_set, rows), seams=seams)
 
 
+def join_controls(cage: ControlSet, meshes: Sequence[VisibleMesh]) -> ControlSet:
+    """The control set of a cage with one control for all copies on the seams of its meshes; unchanged without any."""
+    shown = [meshes[index] for index in cage.surfaces]
+    found = [mesh_seams(mesh.local, mesh.triangles) for mesh in shown]
+    if all(each is None for each in found) and not _is_welded(cage):
+        return cage
+    return _merge_controls(cage, _seam_flags(found, shown))
+
+
+def followed_controls(cage: ControlSet) -> stiv.Weights:
+    """The controls that each vertex of an observed cage follows, (n, m), each of them once."""
+    assert cage.observed is not None
+    followed, seams = cage.observed.followed, cage.control_seams
+    if seams is None:
+        return followed
+    rows = np.repeat(np.arange(followed.shape[0]), np.diff(followed.indptr))
+    row, column = np.unique(np.stack([rows, seams.index[followed.indices]]), axis=1).astype(np.int32)
+    indptr = np.append(0, np.cumsum(np.bincount(row, minlength=followed.shape[0]))).astype(np.int32)
+    return stiv.Weights(indptr, column, np.ones(len(column)), (followed.shape[0], len(seams.first)))
+
+
 def first_copies(seams: Sequence[Seams | None], counts: Sequence[int]) -> Indices:
     """Numbers of the vertices that remain of meshes with these numbers of vertices, stacked, on closed seams."""
     rows, first = [], 0
@@ -170,15 +191,9 @@ def _closed_seams(
     size = float(np.ptp(control_set.controls, axis=0).max(initial=0.0)) or 1.0
     random = np.random.default_rng(0).uniform(-1, 1, control_set.controls.shape) * 0.01 * size
     moved = _motion(control_set, random)
-    drift = DRIFT if control_set.observed is None else OBSERVED_DRIFT
-    closed: list[Seams | None] = []
-    for seams, motion in zip(found, np.split(moved, np.cumsum(counts)[:-1]), strict=True):
-        if seams is None:
-            closed.append(None)
-            continue
-        apart = np.abs(motion - motion[seams.leaders]).max(axis=1)
-        closed.append(seams.limited_to(apart <= drift * np.abs(moved).max(initial=0.0)))
-    return tuple(closed)
+    drift = (DRIFT if control_set.observed is None else OBSERVED_DRIFT) * float(np.abs(moved).max(initial=0.0))
+    motions = np.split(moved, np.cumsum(counts)[:-1])
+    return tuple(seams and seams.limited_to_equal(motion, drift) for seams, motion in zip(found, motions, strict=True))
 
 
 def _motion(control_set: ControlSet, move: Floats) -> Floats:

@@ -8,10 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-import stiv
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
+from stiv.blender.scene.torn_seams import self_cuts
+from stiv.seams import Seams
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
 YIELDING = 0.6  # part of the region at a joint that only responds, and thus turns little
@@ -37,11 +38,28 @@ class Joint:
 
 @dataclass(frozen=True)
 class Skin:
-    """A mesh with the weights of bones: names of the groups, and their weights at each vertex, (n, g)."""
+    """A mesh with the weights of bones: names of the groups, and their weights at each vertex, (n, g).
+
+    seams: vertices of the mesh that stay together.
+    """
 
     mesh: VisibleMesh
     groups: Sequence[str]
     weights: Floats
+    seams: Seams | None = None
+
+    @property
+    def corners(self) -> Indices:
+        """The triangles of the mesh, (f, 3), with the first copy of each vertex."""
+        return self.mesh.triangles if self.seams is None else self.seams.leaders[self.mesh.triangles]
+
+    @property
+    def is_first(self) -> Flags:
+        """Flags of the vertices that are the first of their copies, (n,)."""
+        flags = np.ones(len(self.mesh.local), bool)
+        if self.seams is not None:
+            flags = self.seams.leaders == np.arange(len(flags))
+        return flags
 
     def share(self, bones: frozenset[str]) -> Floats:
         """Share of some bones in each vertex, (n,)."""
@@ -74,18 +92,20 @@ def divide_all(
     joints: Sequence[Joint],
     jacobian: Floats,
     radii: float,
+    seams: Sequence[Seams | None] = (),
 ) -> list[Regions]:
     """Divide meshes with the weights of bones at their vertices; jacobian: of all their vertices, (n, 3, k).
 
-    A mesh that bends without weights of its own, or with loose edges, is not tested against itself.
+    seams: vertices of each mesh that stay together; empty for none. A mesh that bends without weights of its own, or
+    with loose edges, is not tested against itself.
     """
-    found, first = [], 0
-    for mesh, (groups, values) in zip(meshes, weights, strict=True):
+    found, first, joins = [], 0, tuple(seams) or (None,) * len(meshes)
+    for mesh, (groups, values), own in zip(meshes, weights, joins, strict=True):
         rows = jacobian[first : first + len(mesh.local)]
         first += len(mesh.local)
         regions = Regions((mesh,), frozenset(), 0, 0)
         if len(groups) and not len(mesh.loose_edges):
-            regions = divide(Skin(mesh, groups, values), joints, radii)
+            regions = divide(Skin(mesh, groups, values, own), joints, radii)
         if radii > 0 and not regions.joints and _bends(mesh, rows):
             regions = replace(regions, untested=frozenset({(0, 0)}))
         found.append(regions)
@@ -135,17 +155,15 @@ def _folds(
     if not untested:
         return set()
     rows = [np.arange(len(each.local)) if each.cropped is None else each.cropped.vertices for each in meshes]
-    points = np.zeros((max(int(each.max(initial=-1)) for each in rows) + 1, 3))
+    count = max(int(each.max(initial=-1)) for each in rows) + 1
+    points = np.tile(q[assembly.starts[numbers[0]]], (count, 1))  # also of vertices without faces
     for number, each in zip(numbers, rows, strict=True):
         points[each] = q[assembly.vertices(number)]
     corners = np.concatenate([each[mesh.triangles] for each, mesh in zip(rows, meshes, strict=True)])
-    parts = np.repeat([mesh.part for mesh in meshes], [len(mesh.triangles) for mesh in meshes]).tolist()
-    faces = np.concatenate([mesh.faces for mesh in meshes]).tolist()
-    pairs = stiv.find_intersections(points, corners, threads=threads).tolist()
+    part = {face: mesh.part for mesh in meshes for face in mesh.faces.tolist()}
+    pairs = self_cuts(points, corners, np.concatenate([mesh.faces for mesh in meshes]), threads)
     return {
-        frozenset((faces[a], faces[b]))
-        for a, b in pairs
-        if not untested.isdisjoint({(parts[a], parts[b]), (parts[b], parts[a])})
+        pair for pair in pairs for a, b in [[part[face] for face in pair]] if not untested.isdisjoint({(a, b), (b, a)})
     }
 
 
@@ -163,8 +181,7 @@ def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
 
     radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region.
     """
-    mesh = skin.mesh
-    corners, owners = mesh.triangles, mesh.faces
+    mesh, corners, owners = skin.mesh, skin.corners, skin.mesh.faces
     around, beside = np.zeros((2, len(mesh.local)), bool)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     for joint in joints if radii > 0 else ():
@@ -196,6 +213,7 @@ def _region(skin: Skin, joint: Joint, radii: float, edges: Indices) -> Flags:
     bent = (share > BLENDED[0]) & (share < BLENDED[1])
     crossing = (share[edges] < 0.5).any(axis=1) & (share[edges] >= 0.5).any(axis=1)
     bent[edges[crossing]] = True
+    bent &= skin.is_first
     if not bent.any():
         return bent
     distance = np.linalg.norm(skin.mesh.world() - joint.head, axis=1)

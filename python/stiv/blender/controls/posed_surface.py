@@ -11,17 +11,21 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.bone_channels import BoneChannels
+from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
 from stiv.blender.controls.garments import Blocks, Garment, rows_of_blocks
 from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
 from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, transform_points
+from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluation_copies import EvaluationCopies
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corner_vertices, read_positions
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
+from stiv.seams import Seams
 
 TURNED = 1e-5  # change of a matrix above which a bone turns against its parent
 STEP = 0.01  # of the differences for a Jacobian: radians, factors, and diagonals of the surface
+FAR = 0.5  # the same for poses that show which seams open
 
 
 class PosedSurface:
@@ -32,6 +36,7 @@ class PosedSurface:
         start: scalars at the start, (k,).
         meshes: all meshes of the scene; those that the bones bend are divided at joints.
         surfaces: indices of those that the bones move.
+        seams: for each of them, the vertices that stay together.
         untested: pairs of parts that are not tested against each other, with the name of the object.
         note: on the faces at joints; "" without any.
     """
@@ -55,29 +60,34 @@ class PosedSurface:
         self.start = scalars.start
         with kept_twins():
             self._poses = _Poses(scalars, followers, moved, scalars.of(weights) > 0, _wear(garments, meshes, moved))
-            jacobian = self._poses.jacobian()
-            regions = divide_all(moved, self._poses.weights(), self._poses.joints(), jacobian, joint_region)
+            jacobian, skins = self._poses.jacobian(), self._poses.weights()
+            closed = self._poses.closed_seams(moved, jacobian, [values for _, values in skins])
+            regions = divide_all(moved, skins, self._poses.joints(), jacobian, joint_region, closed)
         waiting = iter(regions)
         divided = [next(waiting).parts if mesh.owner.name in followers else (mesh,) for mesh in meshes]
         self.meshes = tuple(part for parts in divided for part in parts)
         self.surfaces = tuple(k for k, mesh in enumerate(self.meshes) if mesh.owner.name in followers)
+        self.seams = tuple(
+            seams_of_part(own, part) for own, each in zip(closed, regions, strict=True) for part in each.parts
+        )
         pairs = zip(moved, regions, strict=True)
         self.untested = frozenset((mesh.owner.name, a, b) for mesh, each in pairs for a, b in each.untested)
         self.note = joint_note(moved, regions)
-        rows = self._rows = _rows_of(moved, [self.meshes[k] for k in self.surfaces])
-        poses = self._poses
+        poses, places = self._poses, _places_of(moved, [self.meshes[k] for k in self.surfaces])
+        vertices = MergedRows.of(places, self.seams, np.concatenate([mesh.world() for mesh in moved]))
+        rows = self._rows = vertices.rows
         lower, upper = (scalars.of(each) for each in ([b.lower for b in bones], [b.upper for b in bones]))
 
         def evaluate(values: Floats) -> Floats | None:
             found = poses.evaluate(values)
-            return None if found is None else found[rows]
+            return None if found is None else vertices.merged(found)
 
         def evaluate_dressed(controls: Floats) -> Floats | None:
             values = controls[: len(lower), 0]
             if (values < lower).any() or (values > upper).any():
                 return None
             found = poses.evaluate(values, controls[len(lower) :])
-            return None if found is None else found[rows]
+            return None if found is None else vertices.merged(found)
 
         self.deformation: stiv.ScalarDeformation | stiv.ObservedDeformation
         if garments:
@@ -119,13 +129,12 @@ def _wear(garments: Sequence[Garment], meshes: Sequence[VisibleMesh], moved: Seq
     return found
 
 
-def _rows_of(meshes: Sequence[VisibleMesh], parts: Sequence[VisibleMesh]) -> Indices:
-    """For each vertex of the parts, in turn, its number in the meshes, in turn."""
+def _places_of(meshes: Sequence[VisibleMesh], parts: Sequence[VisibleMesh]) -> list[Indices]:
+    """For the vertices of each part, their numbers in the meshes, in turn."""
     starts = np.cumsum([0, *(len(mesh.local) for mesh in meshes)])
     firsts = np.cumsum([part.part == 0 for part in parts]) - 1
     own = [np.arange(len(part.local)) if part.cropped is None else part.cropped.vertices for part in parts]
-    found = [starts[first] + vertices for first, vertices in zip(firsts, own, strict=True)]
-    return np.concatenate(found).astype(np.int32)
+    return [(starts[first] + vertices).astype(np.int32) for first, vertices in zip(firsts, own, strict=True)]
 
 
 @dataclass(frozen=True)
@@ -214,6 +223,29 @@ class _Poses:
         self._turned = turned if self._turned is None else self._turned
         self._last = last
         return result
+
+    def closed_seams(
+        self, meshes: Sequence[VisibleMesh], jacobian: Floats, weights: Sequence[Floats]
+    ) -> list[Seams | None]:
+        """The seams of each mesh that stay closed: in the steps of the Jacobian, (n, 3, k), and in two other poses.
+
+        weights: of bones at the vertices of each mesh, (n, g).
+        """
+        seams = [mesh_seams(mesh.local, mesh.triangles) for mesh in meshes]
+        if all(each is None for each in seams):
+            return seams
+        states, ends = [jacobian * self._steps, *self._far_states()], np.cumsum(self._counts)[:-1]
+        own = zip(*(np.split(each, ends) for each in states), strict=True)
+        return [limit_to_closed(*each) for each in zip(seams, meshes, own, weights, strict=True)]
+
+    def _far_states(self) -> list[Floats]:
+        """The surface, (n, 3), at two poses far from the last evaluation, with the garments moved at random."""
+        values, points, random = self._last.copy(), self._points.copy(), np.random.default_rng(0)
+        turns = random.choice([-1.0, 1.0], len(values)) * self._steps * (FAR / STEP)
+        moves = random.uniform(-STEP, STEP, points.shape) * self._size
+        found = [self.evaluate(values + sign * turns, points + sign * moves) for sign in (-1, 1)]
+        self._last, self._points = values, points
+        return [each for each in found if each is not None]
 
     def blocks(self, jacobian: Floats, rows: Indices) -> tuple[Indices, Indices, Floats, tuple[int, int]]:
         """The Jacobian of some rows by scalars and garments, as blocks, at the last evaluation.

@@ -32,6 +32,7 @@ from stiv.blender.scene.exclusions import intersection_notes
 from stiv.blender.scene.obstacle_choice import find_obstacles
 from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scene.static_reading import forget_static_meshes
+from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
@@ -153,6 +154,13 @@ class BlenderEdit:
         threads = self._settings.threads
         notes = (fold_note(self.assembly, each.surfaces, each.untested, self.surface, threads) for each in posed)
         return next(filter(None, notes), "")
+
+    @property
+    def torn_seam_note(self) -> str:
+        """The message on faces at seams that the edit has torn, if they cut each other now; "" without any."""
+        if self._unguarded is not None or not self._solver.excluded.pairs:
+            return ""
+        return torn_seam_note(self.assembly, self._solver.excluded, self.surface, self._settings.threads)
 
     @property
     def passenger_note(self) -> str:

@@ -24,12 +24,14 @@ class MorphReport:
         values: (object, key) and its value now, of each slider that was read.
         blocking: names of the objects in contact when blocked.
         start_notes: about objects that intersect themselves at the start, and about excluded pairs.
+        torn_seam_note: about faces at torn seams that cut each other now; "" without any.
     """
 
     status: str
     values: Mapping[tuple[str, str], float]
     blocking: tuple[str, ...] = ()
     start_notes: tuple[str, ...] = ()
+    torn_seam_note: str = ""
 
 
 def morph(
@@ -81,4 +83,5 @@ def _solve(edit: MorphEdit, goals: Floats) -> MorphReport:
     if np.array_equal(edit.values, edit.start) and status != "unchanged":
         status = "blocked"
     values = dict(zip([(each.owner.name, each.key) for each in edit.sliders], edit.values.tolist(), strict=True))
-    return MorphReport(status, values, result.blocking or settled.blocking, edit.start_notes)
+    blocking = result.blocking or settled.blocking
+    return MorphReport(status, values, blocking, edit.start_notes, edit.torn_seam_note)

@@ -21,6 +21,7 @@ from stiv.blender.scene.exclusions import (
     find_excluded_triangles,
     intersection_notes,
 )
+from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, Exclusions
 from stiv.blender.verify.verification import Verifier
 
@@ -60,15 +61,15 @@ class MorphEdit:
         lower = scene.lower if lower is None else lower
         upper = scene.upper if upper is None else upper
         try:
-            self._jacobian = scene.jacobian()
             ends = [np.where(given, each, self.start) for each in (lower, upper)]
-            scene.fix_resting_objects(ends, self._jacobian)
+            self._jacobian = scene.simplify(ends, scene.jacobian())
             self._deformation = self._make_deformation(lower, upper)
             self._session, excluded = _open_session(scene, self._deformation, _weights(scene, given, others_yield))
         except BaseException:
             scene.write(scene.start)
             raise
         self.start_notes = intersection_notes(excluded, {each.owner.name for each in self.sliders})
+        self._excluded = excluded
         self._verifier = Verifier(scene.assembly, self._session.is_step_free, settings.threads, excluded)
         self._shown = scene.start
         self._lower, self._upper = lower, upper
@@ -102,6 +103,15 @@ class MorphEdit:
     def values(self) -> Floats:
         """The values that the scene shows, (k,)."""
         return self._shown[: len(self.sliders), 0]
+
+    @property
+    def torn_seam_note(self) -> str:
+        """The message on faces at seams that the edit has torn, if they cut each other now; "" without any."""
+        if not self._excluded.pairs:
+            return ""
+        assembly = self._scene.assembly
+        excluded = exclude_undecided(self._excluded, assembly, self._session.excluded, ())
+        return torn_seam_note(assembly, excluded, self._session.surface, self._scene.settings.threads)
 
     @property
     def has_moved_clothes(self) -> bool:

@@ -17,7 +17,7 @@ from stiv.blender.scene.evaluations import RENDER, SHOWN
 from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.settings import Exclusions, FaceKey
 
-_MOST_CHARACTERS = 80  # of a message in Blender
+MOST_CHARACTERS = 80  # of a message in Blender
 _MOST_NOTES = 3  # of one kind that name objects
 
 
@@ -56,15 +56,15 @@ def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, s
 def intersection_text(first: str, second: str, count: int, ending: str = "") -> str:
     """ "A cuts B, 12 faces" with an ending, shortened to the length of a message in Blender."""
     text = f", {count} faces{ending}"
-    most = (_MOST_CHARACTERS - len(text) - len(" cuts ")) // 2
-    return f"{_shortened(first, most)} cuts {_shortened(second, most)}{text}"
+    most = (MOST_CHARACTERS - len(text) - len(" cuts ")) // 2
+    return f"{shortened(first, most)} cuts {shortened(second, most)}{text}"
 
 
 def loose_geometry_text(first: str, second: str) -> str:
     """The message about loose edges or vertices of the first object that cut the second, which may be the same."""
     text = "{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose"
-    most = (_MOST_CHARACTERS - len(text.format("", ""))) // 2
-    return text.format(_shortened(first, most), _shortened(second, most))
+    most = (MOST_CHARACTERS - len(text.format("", ""))) // 2
+    return text.format(shortened(first, most), shortened(second, most))
 
 
 def intersection_notes(excluded: Exclusions, moving: Collection[str]) -> tuple[str, ...]:
@@ -93,11 +93,12 @@ def _first_of(notes: list[str], rest: str) -> list[str]:
 def _intersection_note(first: str, second: str, count: int) -> str:
     if first == second:
         text = f" intersects itself, {count} faces, left as it is"
-        return _shortened(first, _MOST_CHARACTERS - len(text)) + text
+        return shortened(first, MOST_CHARACTERS - len(text)) + text
     return intersection_text(first, second, count, ", may only part")
 
 
-def _shortened(name: str, most: int) -> str:
+def shortened(name: str, most: int) -> str:
+    """A name that is not longer than a number of characters."""
     return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
@@ -146,6 +147,15 @@ def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threa
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
     return all(_is_excluded(excluded, a, b) for a, b in near.assembly.face_pairs(found))
+
+
+def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> set[frozenset[int]]:
+    """Pairs of faces of one mesh, or part of one, that are excluded."""
+    side = Element(mesh.owner.name, "face", 0, mesh.read_from, mesh.part)
+    name = _name(side.side, mesh.read_from)
+    if (side.side, side.side) not in excluded.faces:
+        return set()
+    return {frozenset((i, j)) for (a, i), (b, j) in excluded.pairs if a == b == name and i != j}
 
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Faces of one object that cut each other at the end of an edit, although they only touched along a seam at its start.
+
+Edits do not test such faces, because they touch, unless the seam stays closed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import stiv
+from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.scene.assembly import ROUNDING, Assembly
+from stiv.blender.scene.elements import Element, FacePair, count_faces
+from stiv.blender.scene.exclusions import MOST_CHARACTERS, excluded_within, shortened
+from stiv.blender.scene.triangulation_flips import is_deformable
+from stiv.blender.settings import Exclusions
+from stiv.seams import find_seams, seam_pairs
+
+_Faces = frozenset[int]
+
+
+def torn_seam_note(assembly: Assembly, excluded: Exclusions, q: Floats, threads: int = 0) -> str:
+    """The message on excluded faces at seams that cut each other at positions `q`, (N, 3), and did not at the start.
+
+    "" if there are none.
+    """
+    found: dict[str, list[FacePair]] = {}
+    for number, mesh in enumerate(assembly.meshes):
+        for faces in _cuts_at_seams(assembly, number, excluded, q, threads):
+            first, second = (Element(mesh.owner.name, "face", face, mesh.read_from, mesh.part) for face in faces)
+            found.setdefault(mesh.owner.name, []).append(FacePair(first, second))
+    return next((_message(name, count_faces(pairs)) for name, pairs in found.items()), "")
+
+
+def _message(name: str, count: int) -> str:
+    text = f": {count:,} faces at torn seams cut each other; use Merge by Distance"
+    return shortened(name, MOST_CHARACTERS - len(text)) + text
+
+
+def self_cuts(points: Floats, corners: Indices, faces: Indices, threads: int = 0) -> set[_Faces]:
+    """Pairs of faces that intersect. Vertices that coincide count as one, as in checks.
+
+    points: (n, 3). corners: of triangles, (f, 3). faces: of the triangles, (f,).
+    """
+    seams = find_seams(points, corners, ROUNDING)
+    joined = corners if seams is None else seams.leaders[corners]
+    proper = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
+    owners = faces[proper]
+    found = owners[stiv.find_intersections(points, joined[proper], threads=threads)]
+    return {frozenset((a, b)) for a, b in found.reshape(-1, 2).tolist() if a != b}
+
+
+def _cuts_at_seams(assembly: Assembly, number: int, excluded: Exclusions, q: Floats, threads: int) -> set[_Faces]:
+    """Pairs of excluded faces of a mesh that touch along a seam at the start, and newly cut each other."""
+    mesh = assembly.meshes[number]
+    pairs = excluded_within(excluded, mesh) if is_deformable(assembly, number) else set()
+    if not pairs:
+        return set()
+    rows = np.isin(mesh.faces, np.array(sorted(frozenset().union(*pairs)), np.int32))
+    first, last = assembly.starts[number : number + 2].tolist()
+    corners, faces = assembly.vertices(number)[mesh.triangles[rows]] - np.int32(first), mesh.faces[rows]
+    cut = pairs & self_cuts(q[first:last], corners, faces, threads)
+    if not cut:
+        return set()
+    start = assembly.positions[first:last]
+    touching = seam_pairs(find_seams(start, corners, ROUNDING), corners, faces)
+    return cut.intersection(map(frozenset, touching.tolist())) - self_cuts(start, corners, faces, threads)
