@@ -4,6 +4,7 @@
 import json
 from pathlib import Path
 
+import bmesh
 import bpy
 import numpy as np
 import pytest
@@ -103,6 +104,33 @@ def test_a_clip_is_corrected_by_its_keyframes(tmp_path: Path, name: str) -> None
     jsonschema.validate(report, json.loads(schema.read_text()))
 
 
+def split_meshes() -> None:
+    """Give every face vertices of its own; at their seams, faces touch at all frames."""
+    for ob in [each for each in bpy.context.scene.objects if each.type == "MESH"]:
+        edited = bmesh.new()
+        edited.from_mesh(ob.data)
+        bmesh.ops.split_edges(edited, edges=edited.edges)
+        edited.to_mesh(ob.data)
+        edited.free()
+
+
+@pytest.mark.parametrize("region", ["0", "1.2"])
+def test_a_split_mesh_is_corrected_like_the_whole_one(tmp_path: Path, region: str) -> None:
+    turned = []
+    for is_split in (False, True):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        make_clip("walk")
+        if is_split:
+            split_meshes()
+        (folder := tmp_path / str(is_split)).mkdir()
+        before = bends(25)
+        assert resolved(folder, "--joint-region", region)["free"]
+        assert region != "0" or findings(25) == []
+        assert np.abs(bends(25) - before).max() > 0.01
+        turned.append(bends(25))
+    np.testing.assert_allclose(turned[1], turned[0], atol=0.01)
+
+
 def test_only_the_chosen_bones_change_and_no_more_than_allowed(tmp_path: Path) -> None:
     make_clip("walk")
     before = bends(25)
@@ -194,8 +222,11 @@ def swinging_bar() -> None:
     bpy.context.scene.frame_end = 13
 
 
-def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, capsys) -> None:
+@pytest.mark.parametrize("is_split", [False, True])
+def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, capsys, is_split: bool) -> None:
     swinging_bar()
+    if is_split:
+        split_meshes()
     assert findings(13)
     before = bends(13)
     resolved(tmp_path, "--max-turn", "1", "--joint-region", "0", code=4)
@@ -207,6 +238,10 @@ def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, 
     assert 7 in shaped and {f"Corrective {frame}" for frame in shaped} <= {*keys.keys()}
     cosines = (np.einsum("fbij,fbij->fb", before, bends(13)) - 1) / 2
     assert 0.5 < np.degrees(np.arccos(np.clip(cosines, -1, 1))).max() <= 1.01
+    rest, bent = shapes(13)[[0, 6]]
+    same = np.unique(np.round(rest, 5), axis=0, return_inverse=True)[1].reshape(-1)
+    first = np.unique(same, return_index=True)[1][same]
+    np.testing.assert_allclose(bent, bent[first], atol=1e-6)  # copies stay together
     set_frame(bpy.context.scene, 1)
     assert all(key.value == 0 for key in keys if key.name.startswith("Corrective"))
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.animation.animated_parts import AnimatedPart, Values
-from stiv.blender.animation.tracks import Track
+from stiv.blender.animation.tracks import Track, lasting_seams
+from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
 from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note
 from stiv.blender.controls.posed_surface import skin_weights
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix
@@ -20,6 +21,7 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh, read_positions_of
 from stiv.blender.scene.open_evaluations import OpenEvaluations
 from stiv.blender.scene.passing import passing_pairs
 from stiv.blender.verify.frame_check import set_frame
+from stiv.seams import Seams
 
 SAMPLES = 12  # frames at which turning bones are looked for
 TURNED = 1e-4  # change of a matrix above which a bone turns against its parent
@@ -40,6 +42,7 @@ class Clip:
         regions: the parts of each mesh.
         moving_meshes: the objects whose meshes move, with the vertices of these, see `rows`.
         note: on the faces at joints; "" without any.
+        leaders: for each vertex of all meshes before they were divided, the one with which it coincides, (n,).
     """
 
     def __init__(
@@ -64,7 +67,8 @@ class Clip:
         self._rows = np.cumsum([0, *(len(track.mesh.local) for track in tracks)])
         self._size = float(np.linalg.norm(np.ptp(np.concatenate([track.world(0) for track in tracks]), axis=0))) or 1.0
         self._take_effective_parts(frames[0])
-        self._assemble(tracks, regions or self._regions(tracks, frames, joint_region))
+        seams = [self._closed_seams(track) for track in tracks]
+        self._assemble(tracks, regions or self._regions(tracks, frames, joint_region, seams), seams)
 
     @property
     def count(self) -> int:
@@ -79,7 +83,7 @@ class Clip:
         }
         mobility = ["fixed" if kind == "still" else "deformable" for kind in self._kinds]
         passing = passing_pairs(self._context.scene)
-        return assemble(self.meshes, mobility, (), passing, (), self._untested | rigid)
+        return assemble(self.meshes, mobility, (), passing, self._seams, self._untested | rigid)
 
     @property
     def moving(self) -> tuple[int, ...]:
@@ -112,14 +116,17 @@ class Clip:
         return found
 
     def surface(self, values: Floats) -> Floats | None:
-        """World positions of the moving meshes, (n, 3), at values, (k + 1,); None if their topology changes."""
+        """World positions of the moving meshes, (n, 3), at values, (k + 1,).
+
+        None if their topology changes, or a seam opens.
+        """
         whole = self._read(values)
-        return None if whole is None else whole[self._moving_rows]
+        return None if whole is None else self._moving.merged(whole)
 
     @property
     def rows(self) -> Indices:
         """For each vertex of the assembly, its number in the meshes before they were divided, (N,)."""
-        return self._all_rows
+        return self._all.rows
 
     @property
     def size(self) -> float:
@@ -135,14 +142,14 @@ class Clip:
 
     def whole_surface(self, frame: float, correction: Floats) -> Floats:
         """World positions of all meshes in the assembly, (N, 3). Raises InputError if their topology changes."""
-        found: Floats = self.whole_mesh(frame, correction)[self._all_rows]
+        found: Floats = self.whole_mesh(frame, correction)[self.rows]
         return found
 
     def jacobian(self, values: Floats, towards: float) -> Floats:
         """One-sided differences, (n, 3, k + 1), at values; those by the frame in the direction of time `towards`."""
         steps = np.array([*self._steps(), TIME_STEP * (1 if towards >= 0 else -1)])
         here = self.surface(values)
-        result = np.zeros((len(self._moving_rows), 3, len(values)))
+        result = np.zeros((len(self._moving.rows), 3, len(values)))
         for k, step in enumerate(steps):
             moved = values.copy()
             moved[k] += step
@@ -190,7 +197,19 @@ class Clip:
             raise _no_mesh(self.parts)
         self.parts, self._frame = tuple(moved), float("nan")
 
-    def _regions(self, tracks: Sequence[Track], frames: Sequence[float], joint_region: float) -> list[Regions]:
+    def _closed_seams(self, track: Track) -> Seams | None:
+        """The seams of a mesh that are closed at every frame, and have equal weights of bones."""
+        seams = lasting_seams(track) if track.kind == "shape" else None
+        weights = None if seams is None else self._weights(track.mesh)[1]
+        return limit_to_closed(seams, track.mesh, (), weights)
+
+    def _regions(
+        self,
+        tracks: Sequence[Track],
+        frames: Sequence[float],
+        joint_region: float,
+        seams: Sequence[Seams | None],
+    ) -> list[Regions]:
         """The regions around joints of each mesh; one part if no bones bend it."""
         found = [Regions((track.mesh,), frozenset(), 0, 0) for track in tracks]
         bending = [k for k, track in enumerate(tracks) if track.kind == "shape" and joint_region > 0]
@@ -198,17 +217,18 @@ class Clip:
             here = np.append(np.zeros(self.count), frames[0])
             joints = self._joints(frames)
             rows = np.concatenate([np.arange(*self._rows[k : k + 2]) for k in bending])
-            self._moving_rows = np.arange(self._rows[-1])
+            self._moving = MergedRows.of([np.arange(self._rows[-1], dtype=np.int32)], [None], np.empty((0, 3)))
             jacobian = self.jacobian(here, 1)[rows]
             self.pose(frames[0], np.zeros(self.count))
             meshes = [tracks[k].mesh for k in bending]
-            divided = divide_all(meshes, [self._weights(mesh) for mesh in meshes], joints, jacobian, joint_region)
+            weights, own = [self._weights(mesh) for mesh in meshes], [seams[k] for k in bending]
+            divided = divide_all(meshes, weights, joints, jacobian, joint_region, own)
             for k, each in zip(bending, divided, strict=True):
                 found[k] = each
         return found
 
-    def _assemble(self, tracks: Sequence[Track], regions: Sequence[Regions]) -> None:
-        """Take the meshes with these parts."""
+    def _assemble(self, tracks: Sequence[Track], regions: Sequence[Regions], seams: Sequence[Seams | None]) -> None:
+        """Take the meshes with these parts, and these seams of the whole meshes."""
         parts = [_parts_of(track.mesh, each) for track, each in zip(tracks, regions, strict=True)]
         self.regions = tuple(regions)
         self.note = joint_note([track.mesh for track in tracks], regions)
@@ -220,9 +240,16 @@ class Clip:
         self.divided = frozenset(name for name, _, _ in self._untested)
         self.meshes = tuple(part for own in parts for part in own)
         self._kinds = [track.kind for track, own in zip(tracks, parts, strict=True) for _ in own]
-        rows = [first + _vertices(part) for first, own in zip(self._rows.tolist(), parts, strict=False) for part in own]
-        self._all_rows = np.concatenate(rows)
-        self._moving_rows = np.concatenate([np.empty(0, int), *(rows[k] for k in self.moving)])
+        self._seams = [seams_of_part(each, part) for each, own in zip(seams, parts, strict=True) for part in own]
+        firsts = self._rows.tolist()
+        rows = [first + _vertices(part) for first, own in zip(firsts, parts, strict=False) for part in own]
+        start = np.concatenate([track.world(0) for track in tracks])
+        self._all = MergedRows.of(rows, self._seams, start)
+        self._moving = MergedRows.of([rows[k] for k in self.moving], [self._seams[k] for k in self.moving], start)
+        self.leaders = np.concatenate([
+            first + (np.arange(len(track.mesh.local)) if own is None else own.leaders)
+            for first, track, own in zip(firsts, tracks, seams, strict=False)
+        ])  # fmt: skip
         self.moving_meshes = {
             track.mesh.owner: np.arange(*self._rows[k : k + 2], dtype=np.int32)
             for k, track in enumerate(tracks)

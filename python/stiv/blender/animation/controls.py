@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import bpy
 import mathutils
@@ -13,7 +12,7 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.animation.tracks import Track
+from stiv.blender.animation.tracks import Track, lasting_seams
 from stiv.blender.controls.rotations import (
     affine_about,
     nearest_equivalent,
@@ -22,9 +21,8 @@ from stiv.blender.controls.rotations import (
     rotation_vector,
 )
 from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
-from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.dependencies import ancestors
-from stiv.seams import Seams, common_seams
+from stiv.seams import Seams
 
 SHEAR = 1e-4  # maximum deviation of a placement from location, rotation and scale, relative to its size
 
@@ -87,18 +85,9 @@ def _shape(tracks: Sequence[Track], index: int, hold: Collection[str]) -> Moving
     """Vertices are stored in the frame that Blender makes of the object's first placement."""
     track = tracks[index]
     frame = as_matrix(mathutils.Matrix.LocRotScale(*stored_placement(track.mesh.owner.find(), track.matrices[0])))
-    control_seams = _seams(track)
+    control_seams = lasting_seams(track)
     world = track.world(0) if control_seams is None else track.world(0)[control_seams.first]
     return MovingSet((index,), stiv.identity(len(world)), world, _weight(tracks, (index,), hold), frame, control_seams)
-
-
-def _seams(track: Track) -> Seams | None:
-    """Seams of a mesh that are closed at every frame."""
-    seams = mesh_seams(track.locals[0], track.mesh.triangles)
-    for before, local in pairwise(track.locals):
-        if seams is not None and local is not before:
-            seams = common_seams(seams, mesh_seams(local, track.mesh.triangles))
-    return seams
 
 
 def _rigid_groups(tracks: Sequence[Track]) -> list[tuple[int, ...]]:

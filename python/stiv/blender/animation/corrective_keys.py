@@ -102,12 +102,16 @@ class CorrectiveSolver:
 
     def _follow(self, goals: Sequence[Floats], meshes: dict[ObjectReference, Indices]) -> list[Floats] | None:
         """Positions of all vertices at each goal, (n, 3); None if the rest of the scene cannot follow its animation."""
-        rows, count = self._clip.rows, len(goals[0])
+        rows, leaders, count = self._clip.rows, self._clip.leaders, len(goals[0])
+        is_copy = (leaders != np.arange(count))[:, None]
         yielding = np.zeros(count, bool)
         for own in meshes.values():
             yielding[own] = True
         matrix = stiv.Weights(
-            np.arange(len(rows) + 1, dtype=np.int32), rows.astype(np.int32), np.ones(len(rows)), (len(rows), count)
+            np.arange(len(rows) + 1, dtype=np.int32),
+            leaders[rows].astype(np.int32),
+            np.ones(len(rows)),
+            (len(rows), count),
         )
         separation = max(self._solver.settings.separation, CLEARANCE * self._clip.size)
         options = stiv.EditOptions(weights=yielding.astype(float), separation=separation)
@@ -116,7 +120,8 @@ class CorrectiveSolver:
         for goal in goals[1:]:
             if session.edit(goal).status not in ("reached", "unchanged"):
                 session.settle()
-            points = session.controls
+            moved = session.controls
+            points = np.where(is_copy, goal + (moved - goal)[leaders], moved)
             if not np.allclose(points[~yielding], goal[~yielding], rtol=0, atol=REST * self._clip.size):
                 return None
             found.append(points)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import bpy
 import numpy as np
@@ -13,10 +14,12 @@ import numpy as np
 from stiv import InputError
 from stiv.blender.controls.rotations import is_rotation
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
+from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
 from stiv.blender.scene.evaluations import SHOWN
 from stiv.blender.scene.references import type_name
 from stiv.blender.verify.frame_check import set_frame
+from stiv.seams import Seams, common_seams
 
 
 @dataclass(frozen=True)
@@ -36,6 +39,15 @@ class Track:
         """World matrix, (4, 4), from the first frame to this one, for rigid meshes."""
         moved: Floats = self.matrices[frame] @ np.linalg.inv(self.matrices[0])
         return moved
+
+
+def lasting_seams(track: Track) -> Seams | None:
+    """Seams of a mesh that are closed at every frame."""
+    seams = mesh_seams(track.locals[0], track.mesh.triangles)
+    for before, local in pairwise(track.locals):
+        if seams is not None and local is not before:
+            seams = common_seams(seams, mesh_seams(local, track.mesh.triangles))
+    return seams
 
 
 def read_tracks(
