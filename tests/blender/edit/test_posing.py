@@ -15,7 +15,7 @@ from oracles import rational
 
 import stiv
 from blend_fixtures.characters import make_character, select_bones
-from stiv.blender import BlenderEdit, EditSettings, Motion, UnsupportedStackError, WriteReport
+from stiv.blender import BlenderEdit, EditSettings, Motion, UnsupportedStackError, WriteReport, check_scene
 from stiv.blender.controls import control_reading
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 
@@ -299,6 +299,15 @@ def test_an_edit_says_how_many_faces_at_joints_cut_into_each_other() -> None:
     assert found and 0 < int(found[1]) == pytest.approx(faces_that_cut(body), abs=4)  # Blender may flip diagonals
     again = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
     assert again.fold_note == ""
+
+
+def test_folds_of_the_viewport_and_of_the_render_are_found_apart() -> None:
+    """Both have faces and vertices with the same numbers. Without folds in either, none are named."""
+    _, body, _ = box_below_hand(0.14)
+    add_modifier(body, "SUBSURF", levels=1, render_levels=2)
+    _, report, edit = apply("rotate", turn(np.radians(60), "Y", SHOULDER))
+    assert report.passed and edit.guard.choice == "both"
+    assert check_scene(bpy.context).pairs == () and edit.fold_note == ""
 
 
 def test_the_region_of_a_joint_is_adjustable() -> None:

@@ -137,14 +137,24 @@ def fold_note(
 
     "" if there are none. surfaces: numbers of the meshes that bones bend. untested: pairs of their parts.
     """
-    for name in dict.fromkeys(assembly.meshes[number].owner.name for number in surfaces):
-        numbers = [number for number in surfaces if assembly.meshes[number].owner.name == name]
+    for numbers in _divided_meshes(assembly, surfaces):
+        name = assembly.meshes[numbers[0]].owner.name
         parts = frozenset((a, b) for owner, a, b in untested if owner == name)
         found = _folds(assembly, numbers, parts, q, threads)
         folded = found and found - _folds(assembly, numbers, parts, assembly.positions, threads)
         if folded:
             return f"{name}: {len(frozenset().union(*folded)):,} faces at joints cut into each other"
     return ""
+
+
+def _divided_meshes(assembly: Assembly, surfaces: Sequence[int]) -> list[list[int]]:
+    """The numbers of the parts of each mesh; an object may show one mesh in the viewport and another in the render."""
+    found: list[list[int]] = []
+    for number in surfaces:
+        if assembly.meshes[number].part == 0:
+            found.append([])
+        found[-1].append(number)
+    return found
 
 
 def _folds(
