@@ -37,6 +37,26 @@ def test_contact_at_the_start_is_refused_with_its_pairs(case):
     assert {tuple(pair) for pair in np.asarray(raised.value.pairs).tolist()} <= found
 
 
+@pytest.mark.parametrize(
+    ("triangles", "loose_edges", "counted"),
+    [
+        ([[0, 1, 2], [3, 4, 5]], [], "1 pair of faces cut each other"),
+        ([[0, 1, 2], [0, 2, 1], [3, 4, 5]], [], "3 pairs of faces cut each other"),
+        ([[0, 1, 2]], [[3, 4]], "1 loose edge or vertex cuts a face"),
+        (
+            [[0, 1, 2], [0, 2, 1]],
+            [[3, 4], [3, 5]],
+            "1 pair of faces cut each other, and 2 loose edges or vertices cut faces",
+        ),
+    ],
+)
+def test_the_message_counts_what_intersects_and_nothing_else(triangles, loose_edges, counted):
+    vertices = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0.2, 0.2, -1), (0.2, 0.2, 1), (0.3, 0.2, 1)])
+    surface = stiv.Surface(triangles, 6, loose_edges or None)
+    with pytest.raises(stiv.StartIntersectsError, match=f"^the start already intersects: {counted}; object"):
+        stiv.EditSession(surface, stiv.identity(6), vertices)
+
+
 @pytest.mark.parametrize(("separation", "least_slide"), [(0.5, 0.0), (0.3, 0.1), (0.2, 0.2), (0.15, 0.2), (0.1, 0.29)])
 def test_a_separation_larger_than_the_distance_at_the_start_moves_nothing_apart(separation, least_slide):
     """With 0.5, hardly any slide is possible: every vertex starts 0.5001 above the sides of the next squares."""

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "stiv/error.hpp"
@@ -39,6 +40,24 @@ void check_storage(const std::vector<StorageFrame>& frames, Index control_count)
                 storage.frame.row(3) == Eigen::RowVector4d(0, 0, 0, 1),
             name + ": the matrix is not affine and invertible; an object of zero scale cannot be edited");
   }
+}
+
+std::size_t count_different(const IndexPairs& pairs) {
+  std::set<Index> firsts;
+  for (const auto& pair : pairs) firsts.insert(pair.first);
+  return firsts.size();
+}
+
+// "3 pairs of faces cut each other, and 1 loose edge or vertex cuts a face"; leaves out what does not occur.
+std::string counts(const StaticPairs& found) {
+  const std::size_t faces = found.faces.size();
+  const std::size_t loose = count_different(found.loose_edges) + count_different(found.loose_vertices);
+  std::string text;
+  if (faces > 0) text = (faces == 1 ? "1 pair" : std::to_string(faces) + " pairs") + " of faces cut each other";
+  if (faces > 0 && loose > 0) text += ", and ";
+  if (loose == 1) text += "1 loose edge or vertex cuts a face";
+  if (loose > 1) text += std::to_string(loose) + " loose edges or vertices cut faces";
+  return text;
 }
 
 }  // namespace
@@ -81,8 +100,7 @@ std::string describe_control(const Surface& surface, const Deformation& deformat
 std::string describe(const Surface& surface, const StaticPairs& found,
                      const std::function<std::string(Index)>& name_face) {
   std::ostringstream message;
-  message << "the start already intersects: " << found.faces.size() << " pairs of faces, "
-          << found.loose_edges.size() + found.loose_vertices.size() << " of a loose edge or vertex and a face";
+  message << "the start already intersects: " << counts(found);
   const auto name_first = [&](const IndexPairs& pairs, const auto& describe_first) {
     for (std::size_t k = 0; k < std::min(pairs.size(), pairs_named); ++k)
       message << "; " << describe_first(pairs[k].first) << " with " << name_face(pairs[k].second);
