@@ -67,6 +67,17 @@ def as_message(lines: Iterable[str]) -> str:
     return first
 
 
+def as_messages(lines: Iterable[str]) -> list[str]:
+    """The lines as messages, each with as many of them as fit the status bar together."""
+    messages: list[str] = []
+    for line in lines:
+        if messages and len(messages[-1]) + len(line) + 2 <= LENGTH:
+            messages[-1] += f"; {line}"
+        else:
+            messages.append(line)
+    return messages
+
+
 def brief(text: str) -> str:
     """The first clauses of a text that fit the status bar."""
     if len(text) <= LENGTH:

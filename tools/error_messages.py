@@ -2,8 +2,9 @@
 """Lists the messages of `stiv.blender` that Blender shows, as templates with {} for each part that varies.
 
 These are texts of errors and of their notes, values of dictionaries named ..._REASONS, texts assigned to `reason`,
-and texts that functions named ..._note, ..._message, ..._failure or ..._text return. A name and a colon at the
-beginning are left out: "{}: its scale is zero; change it" is listed as "its scale is zero; change it".
+templates of `fit_message`, and texts that functions named ..._note, ..._message, ..._failure or ..._text return. A
+name and a colon at the beginning are left out: "{}: its scale is zero; change it" is listed as "its scale is zero;
+change it".
 """
 
 import ast
@@ -23,7 +24,7 @@ def templates(folder: Path = PACKAGE) -> set[str]:
     """All templates in the sources of a folder."""
     paths = [path for path in sorted(folder.rglob("*.py")) if not {*path.parts, path.name} & {*ELSEWHERE}]
     texts = {text for path in paths for text in in_source(path.read_text(encoding="utf-8"))}
-    bodies = {re.sub(r"^(\{\}( and \{\})?: )+", "", text) for text in texts}
+    bodies = {re.sub(r"^(\{\}(\{\}| and \{\})?: )+", "", text) for text in texts}
     return {body for body in bodies if sum(map(str.isalpha, body)) >= LETTERS}
 
 
@@ -38,7 +39,7 @@ def values(node: ast.AST) -> list[ast.expr]:
     """The expressions in a node that are messages."""
     if isinstance(node, ast.Call):
         name = getattr(node.func, "id", getattr(node.func, "attr", ""))
-        return node.args if name in ERRORS else []
+        return node.args[:1] if name == "fit_message" else node.args if name in ERRORS else []
     if isinstance(node, ast.Assign):
         target = ast.unparse(node.targets[0])
         if target.endswith("REASONS") and isinstance(node.value, ast.Dict):

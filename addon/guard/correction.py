@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 
 from .. import stiv_blender
+from ..intersection_texts import short_name
+from ..modal.header_texts import listed, naming
 from ..scene.edit_settings import edit_settings
 from ..translations import translate, translate_error
-from .problem import listed
 
 TIME_LIMIT = 60.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
 
@@ -57,7 +59,7 @@ def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedSce
         return Outcome(reason=translate_error(error), failed=True)
     reason = translate_error(guarded.reason) if guarded.pairs else ""
     if guarded.pairs and guarded.deformers:
-        reason = translate("{} cannot be corrected").format(listed(guarded.deformers, translate))
+        reason = _naming(translate("{} cannot be corrected"), guarded.deformers)
     return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
 
 
@@ -74,17 +76,21 @@ def stop(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Ou
 
 def _text(guarded: stiv_blender.GuardedResult) -> str:
     texts = []
-    names, blocking = listed(guarded.corrected, translate), listed(guarded.blocking, translate)
-    if blocking:
+    if guarded.blocking:
+        both = (guarded.corrected, guarded.blocking)
+        names, blocking = (listed([*map(short_name, each)], translate) for each in both)
         texts.append(translate("corrected {}, blocked by {}").format(names, blocking))
-    elif names:
-        texts.append(translate("corrected {}").format(names))
+    elif guarded.corrected:
+        texts.append(_naming(translate("corrected {}"), guarded.corrected))
     if guarded.cut:
         texts.append(translate("blocked: the topology changes here"))
     if guarded.placed:
-        text = translate("put {} at the nearest free place")
-        texts.append(text.format(listed(guarded.placed, translate)))
+        texts.append(_naming(translate("put {} at the nearest free place"), guarded.placed))
     return "; ".join(texts)
+
+
+def _naming(text: str, names: Sequence[str]) -> str:
+    return naming(text, names, translate, stiv_blender.fit_message)
 
 
 def revert(context: bpy.types.Context, accepted: stiv_blender.SceneState, frame: int) -> tuple[str, ...]:

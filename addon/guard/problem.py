@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from .. import stiv_blender
 from ..intersection_texts import details, element_lines, headline
 from ..modal.header_texts import Translate
-from ..modal.header_texts import listed as listed
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,13 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .. import native_module, stiv_blender
+from ..modal.header_texts import naming
 from ..operators import last_edit
 from ..operators.reports import error_text
 from ..translations import translate
 from . import alerts, correction, undo_steps, waiting
 from .decision import POLL_INTERVAL, Action, Guard, Observation, decide, is_new_result
-from .problem import Problem, listed
+from .problem import Problem
 from .record import Record
 
 STEP_NAME = "Live Guard"
@@ -242,7 +243,8 @@ def _first_text(first: bool) -> str:
     found = problem()
     if not first or found is None or not found.known:
         return ""
-    return translate("{} intersect and are left alone; all else is guarded").format(listed(found.names, translate))
+    text = translate("{} intersect and are left alone; all else is guarded")
+    return naming(text, found.names, translate, stiv_blender.fit_message)
 
 
 def _store_in_history(window: bpy.types.Window, action: Action, seen: Observation) -> None:

@@ -95,10 +95,15 @@ def _modes(state: State, translate: Translate) -> list[str]:
     ]
 
 
-def result_text(status: str, blocking: Sequence[str] = (), translate: Translate = str) -> str:
-    """The status of a result for the user; `blocking` names the objects that block the edit."""
+def result_text(
+    status: str, blocking: Sequence[str] = (), translate: Translate = str, fill: Callable[..., str] = str.format
+) -> str:
+    """The status of a result for the user; `blocking` names the objects that block the edit.
+
+    fill: puts the names into a template.
+    """
     if status == "blocked" and blocking:
-        return translate("blocked by {}").format(listed(blocking, translate))
+        return naming(translate("blocked by {}"), blocking, translate, fill)
     text = _STATUS_TEXTS.get(status, status)
     return translate(text) if text else ""
 
@@ -116,6 +121,12 @@ def listed(names: Sequence[str], translate: Translate = str, most: int = MAX_NAM
     """The first names, and the number of the others."""
     first, others = ", ".join(names[:most]), len(names) - most
     return translate("{} and {} more").format(first, others) if others > 0 else first
+
+
+def naming(text: str, names: Sequence[str], translate: Translate, fill: Callable[..., str]) -> str:
+    """A text with the first names at its {}, and the number of the others."""
+    places = listed(["{}"] * len(names), translate)
+    return fill(text.format(places), *names[:MAX_NAMES])
 
 
 def fixed_text(value: float, digits: int = DIGITS) -> str:

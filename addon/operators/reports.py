@@ -5,14 +5,15 @@ from __future__ import annotations
 
 import traceback
 from collections import deque
+from collections.abc import Sequence
 
 import bpy
 
 from .. import stiv_blender
-from ..intersection_texts import LENGTH, brief, short_name
+from ..intersection_texts import LENGTH, as_message, as_messages, brief, short_name
 from ..modal.drag_loop import DragEnded, restore_after_error
 from ..modal.header_texts import result_text
-from ..translations import translate, translate_error
+from ..translations import errors, translate, translate_error
 from ..units import length_text
 
 last_messages: deque[str] = deque(maxlen=10)  # for the report that a user copies into an issue
@@ -30,42 +31,52 @@ def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None
         return translate("blocked: the topology changes here")
     if result.status == "blocked" and not result.blocking and edit is not None and edit.keeps_intersections:
         return translate("blocked: intersecting surfaces may only part")
-    return result_text(result.status, tuple(result.blocking), translate)
+    return result_text(result.status, tuple(result.blocking), translate, stiv_blender.fit_message)
+
+
+def message_text(message: object) -> str:
+    """The text of an error or a note, in the language of the interface; names are shortened to fit the status bar."""
+    return brief(errors.in_language(str(message), translate, stiv_blender.fit_message))
 
 
 def write_failure(report: stiv_blender.WriteReport | None) -> str:
     """Why the accepted state could not be written; empty if it was, or if nothing was written yet."""
-    return "" if report is None or report.passed else translate_error(report.message)
+    return "" if report is None or report.passed else message_text(report.message)
 
 
-def left_out_text(context: bpy.types.Context, edit: stiv_blender.Edit, *notes: str) -> str:
-    """The message on exceptions from the guarantee: faces at joints and torn seams, and objects that the next frame
+def left_out_texts(context: bpy.types.Context, edit: stiv_blender.Edit, *notes: str) -> list[str]:
+    """The messages on exceptions from the guarantee: faces at joints and torn seams, and objects that the next frame
     resets; and notes of the start.
     """
     reset_note = "" if context.scene.tool_settings.use_keyframe_insert_auto else edit.reset_note
-    found = (edit.fold_note, edit.torn_seam_note, reset_note, *notes)
-    return "; ".join(map(translate_error, filter(None, found)))
+    return [message_text(note) for note in (edit.fold_note, edit.torn_seam_note, reset_note, *notes) if note]
 
 
-def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: str = "") -> None:
+def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: Sequence[str] = ()) -> None:
     """Report the outcome of an edit with what it left out, or the failure to write it."""
     if failure:
         say(operator, "WARNING", failure)
-    elif left_out:
-        say(operator, "WARNING", "; ".join(filter(None, (outcome, left_out))))
-    elif outcome:
-        say(operator, "INFO", outcome)
+        return
+    for message in as_messages(filter(None, (outcome, *left_out))):
+        say(operator, "WARNING" if left_out else "INFO", message)
 
 
 def report_error(operator: bpy.types.Operator, error: Exception, edit: stiv_blender.Edit | None = None) -> set[str]:
     """Report an error after restoring `edit`; unexpected errors print their trace."""
     if edit is not None:
         restore_after_error(edit, error)
-    text = "; ".join([error_text(error), *map(translate_error, getattr(error, "__notes__", ()))])
-    objects = getattr(error, "objects", ())  # of stiv.blender.ObjectsIntersectError
-    short = translate_error(stiv_blender.intersection_text(*objects[0])) if objects else ""
-    _report_with_details(operator, text, short)
+    notes = getattr(error, "__notes__", ())
+    texts = [error_text(error), *map(translate_error, notes)]
+    _report_with_details(operator, "; ".join(texts), _in_short(error, texts[0], notes))
     return {"CANCELLED"}
+
+
+def _in_short(error: Exception, text: str, notes: Sequence[str]) -> str:
+    """The message of an error that fits the status bar. text: the whole text."""
+    objects = getattr(error, "objects", ())  # of stiv.blender.ObjectsIntersectError
+    if objects:
+        return message_text(stiv_blender.intersection_text(*objects[0]))
+    return as_message([message_text(error) if _is_explained(error) else brief(text), *map(message_text, notes)])
 
 
 def _report_with_details(operator: bpy.types.Operator, text: str, short: str = "") -> None:
@@ -78,10 +89,15 @@ def _report_with_details(operator: bpy.types.Operator, text: str, short: str = "
 
 def error_text(error: Exception) -> str:
     """The message of an error that names its cause. Texts of Python and NumPy go to the console with their trace."""
-    if isinstance(error, stiv_blender.InputError | stiv_blender.SceneChangedError | DragEnded):
+    if _is_explained(error):
         return translate_error(error)
     traceback.print_exception(error)
     return translate("Unexpected error, the edit is undone; the system console has the details")
+
+
+def _is_explained(error: Exception) -> bool:
+    """Does the message of the error name its cause?"""
+    return isinstance(error, stiv_blender.InputError | stiv_blender.SceneChangedError | DragEnded)
 
 
 def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:

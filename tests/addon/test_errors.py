@@ -30,11 +30,11 @@ BY_HAND = {  # of the compiled core, or composed of several parts
     "coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene "
     "nearer to the origin", "the faces have changed, so their exclusions are dropped",
     "the start already intersects: {}", "1 pair of faces cut each other{}", "{} pairs of faces cut each other{}",
-    "the system is singular to rounding; add handles or fixed vertices", "{} cuts {}, {} faces, may only part", "{} cuts {}, {} faces{}",
+    "the system is singular to rounding; add handles or fixed vertices",
+    "{} cuts {}, {} faces, may only part", "{} cuts {}, {} faces{}",
     "{} faces at torn seams cut each other; use Merge by Distance",
     "{} intersects itself, {} faces, left as it is", "{} more objects intersect themselves, left as they are",
     "{} more pairs of objects cut each other, may only part", "{} triangles have no area", "{} vertices follow",
-    "{}{}: cannot move along; use Blender's own transform",
 }  # fmt: skip
 
 

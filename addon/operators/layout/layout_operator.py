@@ -10,7 +10,7 @@ import bpy
 from bpy.props import FloatProperty
 
 from ... import stiv_blender
-from ...intersection_texts import brief
+from ...intersection_texts import as_message
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..repair.reshape import ReshapeOperator
@@ -81,23 +81,24 @@ class LayoutOperator(ReshapeOperator):
 
     def _finish(self, context: bpy.types.Context, report: stiv_blender.LayoutReport) -> set[str]:
         context.window_manager.stiv_last_edit = json.dumps(asdict(report))
-        text = layout_text(report, DONE_TEXTS[type(self).bl_idname])
-        context.window_manager.stiv_check.summary = text
+        texts = layout_texts(report, DONE_TEXTS[type(self).bl_idname])
+        context.window_manager.stiv_check.summary = "; ".join(texts)
         if report.status == "budget":
-            self.report({"ERROR"}, text)
+            self.report({"ERROR"}, as_message(texts))
             return {"CANCELLED"}
-        self.report({"WARNING"} if report.left else {"INFO"}, brief(text))
+        self.report({"WARNING"} if report.left else {"INFO"}, as_message(texts))
         return {"FINISHED"} if report.changed else {"CANCELLED"}
 
 
-def layout_text(report: stiv_blender.LayoutReport, done: str) -> str:
-    """One line: the counts, and the first objects that stay, each with the reason."""
+def layout_texts(report: stiv_blender.LayoutReport, done: str) -> list[str]:
+    """The counts, and the first objects that stay, each with the reason."""
     if report.status in STATUS_TEXTS:
-        return translate(STATUS_TEXTS[report.status])
-    left = [translate(REASON_TEXTS[reason]).format(name) for name, reason in report.left[:NAMED]]
+        return [translate(STATUS_TEXTS[report.status])]
+    fit = stiv_blender.fit_message
+    left = [fit(translate(REASON_TEXTS[reason]), name) for name, reason in report.left[:NAMED]]
     if len(report.left) > NAMED:
         left.append("...")
     if report.changed or not left:
         scaled = [translate("scaled by {}").format(f"{report.scale:.3g}")] if report.scale != 1 else []
         left = [translate(done).format(len(report.changed), report.asked), *scaled, *left]
-    return "; ".join(left)
+    return left

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ... import stiv_blender
+from ..reports import message_text
 from . import refusals
 from .passing import STIV_OT_let_pass
 from .repair import STIV_OT_repair
@@ -23,7 +24,7 @@ def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Excep
         return set()
     if not isinstance(error, stiv_blender.ObjectsIntersectError) or not error.objects:
         return refusals.offer(operator, context, error)
-    lines = [stiv_blender.intersection_text(*pair) for pair in error.objects]
+    lines = [message_text(stiv_blender.intersection_text(*pair)) for pair in error.objects]
 
     def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         for line in lines[1:MAX_PAIRS]:

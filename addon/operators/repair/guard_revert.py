@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import bpy
 
+from ... import stiv_blender
 from ...guard import correction, watcher
-from ...guard.problem import listed
+from ...modal.header_texts import naming
 from ...native_module import NeedsNativeModule
 from ...translations import translate
 from .. import last_edit
@@ -49,6 +50,6 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
             headline = remaining.headline(translate)
             self.report({"WARNING"}, translate("{}; use Undo for other changes").format(headline))
             return {"FINISHED"} if names else {"CANCELLED"}
-        restored = translate("Restored {}").format(listed(names, translate))
+        restored = naming(translate("Restored {}"), names, translate, stiv_blender.fit_message)
         self.report({"INFO"}, restored if names else translate("Restored frame {}").format(frame))
         return {"FINISHED"}

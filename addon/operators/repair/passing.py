@@ -13,7 +13,7 @@ from ...scene.edit_settings import edit_settings, passing_pairs
 from ...translations import translate
 from ..reports import report_error
 
-LISTED = 3  # pairs in a line
+LISTED = 2  # pairs in a line
 
 
 class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
@@ -69,5 +69,6 @@ def passing_text(scene: bpy.types.Scene) -> str:
     pairs = passing_pairs(scene)
     if not pairs:
         return ""
-    listed = ", ".join(" / ".join(pair) for pair in pairs[:LISTED]) + (", …" if len(pairs) > LISTED else "")
-    return translate("{}: excluded, may pass").format(listed)
+    places = ", ".join(["{} / {}"] * min(len(pairs), LISTED)) + (", …" if len(pairs) > LISTED else "")
+    names = [name for pair in pairs[:LISTED] for name in pair]
+    return stiv_blender.fit_message(translate("{}: excluded, may pass").format(places), *names)

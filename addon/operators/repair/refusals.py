@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ... import stiv_blender
-from ...translations import translate_error
+from ..reports import message_text
 
 SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 
@@ -18,7 +18,7 @@ def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Excep
     """
     if not isinstance(error, stiv_blender.UnsupportedStackError) or not error.modifier:
         return set()
-    owner, modifier, text = error.owner, error.modifier, translate_error(error)
+    owner, modifier, text = error.owner, error.modifier, message_text(error)
 
     def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         ob = bpy.data.objects.get(owner)

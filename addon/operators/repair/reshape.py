@@ -13,9 +13,9 @@ from ...intersection_texts import as_message, counted_faces, details, headline
 from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
-from ...translations import translate, translate_error
+from ...translations import translate
 from ..last_edit import numbers
-from ..reports import report_error
+from ..reports import message_text, report_error
 from ..task_operator import TaskOperator
 
 REPORTED_PAIRS = 100  # pairs in the report for scripts
@@ -116,7 +116,7 @@ def outcome(report: stiv_blender.ReshapeReport) -> list[str]:
         text = translate("Resolved {}, mean deviation {}").format(faces, f"{report.deviation:.2%}")
     else:
         text = translate(_OUTCOME_TEXTS.get(report.status, report.status))
-    message = translate_error(report.message) if report.status != "cancelled" else ""
+    message = message_text(report.message) if report.status != "cancelled" else ""
     pairs = report.pairs
     first = (message, text) if report.status == "refused" else (text, message)
     return [line for line in (*first, headline(pairs, translate), *details(pairs, translate)) if line]

@@ -48,5 +48,6 @@ class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
             self.report({"INFO"}, translate("The selection intersects no other object"))
             return {"CANCELLED"}
         distance = length_text(found.distance, context.scene.unit_settings)
-        self.report({"INFO"}, translate("{}: moved {} away from {}").format(found.moved[0], distance, found.others[0]))
+        text = translate("{}: moved {} away from {}")
+        self.report({"INFO"}, stiv_blender.fit_message(text, found.moved[0], distance, found.others[0]))
         return {"FINISHED"}

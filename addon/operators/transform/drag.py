@@ -12,7 +12,6 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
-from ...intersection_texts import brief
 from ...modal.axis_lock import AxisLock
 from ...modal.drag_loop import DragCalls, DragEnded, DragLoop, Progress
 from ...modal.header_texts import turned_text
@@ -35,11 +34,19 @@ from ...transform import Transform, requested_transform
 from ...transform.frame import Frame
 from ...transform.pointing import with_view
 from ...transform.view import Vector
-from ...translations import translate, translate_error
+from ...translations import translate
 from ...units import length_text, readers
 from .. import last_edit, running, window_io
 from ..repair import decisions
-from ..reports import left_out_text, outcome_text, report_error, report_outcome, report_raised, write_failure
+from ..reports import (
+    left_out_texts,
+    message_text,
+    outcome_text,
+    report_error,
+    report_outcome,
+    report_raised,
+    write_failure,
+)
 from . import drag_results
 from .constraint import constraint_of
 from .move import STIV_OT_move
@@ -183,7 +190,7 @@ class DragOperator(Mixin):
             return
         self._shown = news
         turned = turned_text(writer.turned, translate)
-        note = brief(translate_error(drag.note))  # a longer one would not fit the header, and be left out
+        note = message_text(drag.note)  # a longer one would not fit the header, and be left out
         notes = [text for text in (turned, note, write_failure(writer.report)) if text]
         window_io.show(context, drag.state, value, status, [*notes, *self._notes], self._orientations)
         if writer.written is not None and writer.written is drag.result:
@@ -238,7 +245,7 @@ class DragOperator(Mixin):
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
             stopped = drag.stopped or result.status == "budget"  # nothing solves on
             outcome = translate("stopped") if stopped else outcome_text(result, edit)
-            report_outcome(self, outcome, write_failure(report), left_out_text(context, edit, edit.passenger_note))
+            report_outcome(self, outcome, write_failure(report), left_out_texts(context, edit, edit.passenger_note))
             edit.finish()
         store_proportional(context, drag.state.proportional)
         store_snap(context, drag.state)

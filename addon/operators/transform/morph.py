@@ -13,8 +13,8 @@ from ...modal.header_texts import result_text
 from ...native_module import NeedsNativeModule
 from ...properties import StivKeyValue
 from ...scene.edit_settings import edit_settings
-from ...translations import translate, translate_error
-from ..reports import report_error, say
+from ...translations import translate
+from ..reports import message_text, report_error, say
 
 
 class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
@@ -68,8 +68,8 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         described = {"status": found.status, "blocking": found.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
         for note in filter(None, (*found.start_notes, found.torn_seam_note)):
-            self.report({"WARNING"}, translate_error(note))
-        if text := result_text(found.status, found.blocking, translate):
+            self.report({"WARNING"}, message_text(note))
+        if text := result_text(found.status, found.blocking, translate, stiv_blender.fit_message):
             say(self, "INFO", text)
         return {"FINISHED"}
 

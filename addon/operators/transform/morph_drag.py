@@ -12,9 +12,9 @@ from ...modal.state import Effect
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
 from ...scene.frame import view_areas
-from ...translations import translate, translate_error
+from ...translations import translate
 from .. import running, window_io
-from ..reports import report_error, report_raised
+from ..reports import message_text, report_error, report_raised
 from .morph import STIV_OT_morph, register_drag
 
 TICK = 1.0 / 60.0  # least seconds between two solves
@@ -48,7 +48,8 @@ class STIV_OT_morph_drag(NeedsNativeModule, bpy.types.Operator):
         names = [each.name for each in keys]
         active = ob.active_shape_key.name if ob.active_shape_key is not None else ""
         if not names:
-            self.report({"ERROR"}, translate("{}: no shape key can be moved; add one").format(ob.name))
+            text = translate("{}: no shape key can be moved; add one")
+            self.report({"ERROR"}, stiv_blender.fit_message(text, ob.name))
             return {"CANCELLED"}
         width = RANGE_WIDTH * context.preferences.system.ui_scale
         mouse = window_io.plain_event(event, context.region).mouse
@@ -152,9 +153,9 @@ class STIV_OT_morph_drag(NeedsNativeModule, bpy.types.Operator):
         bpy.context.view_layer.update()
 
     def _show(self, context: bpy.types.Context) -> None:
-        state, result = self._state, self._result
-        status = "" if result is None else result_text(result.status, tuple(result.blocking), translate)
-        notes = [state.error, translate_error(getattr(self, "_failure", ""))]
+        state, result, fill = self._state, self._result, stiv_blender.fit_message
+        status = "" if result is None else result_text(result.status, tuple(result.blocking), translate, fill)
+        notes = [state.error, message_text(getattr(self, "_failure", ""))]
         modes = translate("others yield") if state.others_yield else ""
         parts = [translate(STIV_OT_morph.bl_label), state.text(self._values()), status, modes, *notes]
         window_io.write_header(context, [each for each in parts if each])

@@ -9,6 +9,7 @@ from typing import Any
 import bpy
 
 from ... import stiv_blender
+from ...intersection_texts import as_message, as_messages, brief
 from ...modal.drag_loop import restore_after_error
 from ...modal.request import Request
 from ...native_module import NeedsNativeModule
@@ -20,7 +21,16 @@ from ...transform.view import Vector
 from ...translations import translate, translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
-from ..reports import left_out_text, outcome_text, report_error, report_outcome, report_raised, say, write_failure
+from ..reports import (
+    left_out_texts,
+    message_text,
+    outcome_text,
+    report_error,
+    report_outcome,
+    report_raised,
+    say,
+    write_failure,
+)
 from ..task_operator import TaskOperator
 from . import drag_results, redo_limit
 from .constraint import Constraint, free_directions
@@ -128,9 +138,8 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         """Steps that write the accepted state, report what the edit left out, and end the edit."""
         report = yield from edit.write_steps()
         insert_keyframes(context, edit)
-        left_out = left_out_text(context, edit)
-        if left_out:
-            say(self, "WARNING", left_out)
+        for text in as_messages(left_out_texts(context, edit)):
+            say(self, "WARNING", text)
         edit.finish()
         return report.result or result, report
 
@@ -218,9 +227,9 @@ def _solve_values(
 def report_start(operator: bpy.types.Operator, context: bpy.types.Context, edit: stiv_blender.BlenderEdit) -> None:
     """Report the warnings of an edit of typed values, and the objects that it does not guard."""
     for text in edit.summary.warnings:
-        operator.report({"WARNING"}, translate_error(text))
-    if context.window_manager.stiv_check.left_out:
-        operator.report({"INFO"}, context.window_manager.stiv_check.left_out)
+        operator.report({"WARNING"}, message_text(text))
+    if left_out := context.window_manager.stiv_check.left_out:
+        operator.report({"INFO"}, as_message(map(brief, left_out.splitlines())))
 
 
 def begin_edit(

@@ -26,37 +26,49 @@ _MODIFIER = re.compile(r'([^":]+) "(.+?)" (.+)', re.DOTALL)  # its type, its nam
 Translate = Callable[[str], str]
 
 
-def in_language(text: str, translate: Translate) -> str:
-    """A message in the language of `translate`, which translates templates. A name before a colon stays."""
-    starts = [0, *(found.end() for found in re.finditer(": ", text))]
-    for start in starts:
-        filled = _filled(text[start:], translate) or _modifier(text[start:], translate)
-        if filled:
-            return text[:start] + filled
+def in_language(text: str, translate: Translate, fill: Callable[..., str] = str.format) -> str:
+    """A message in the language of `translate`, which translates templates. A name before a colon stays.
+
+    fill: puts names and numbers into a template.
+    """
+    for start in [0, *(found.end() for found in re.finditer(": ", text))]:
+        parts: list[str] = []
+        template = _template(text[start:], translate, parts) or _modifier(text[start:], translate, parts)
+        if template:
+            names = [f"{_placeholder(name, parts)}: " for name in text[:start].split(": ")[:-1]]
+            return fill("".join([*names, template]), *parts)
     return text
 
 
-def _filled(text: str, translate: Translate) -> str:
-    """The translation of the template that fits a text, filled in; empty if none fits."""
+def _template(text: str, translate: Translate, parts: list[str]) -> str:
+    """The translated template that fits a text, whose parts are added to `parts`; empty if none fits."""
     for pattern, template in _patterns():
         found = pattern.fullmatch(text)
-        if found is not None and (target := translate(template)) != template:
-            return target.format(*(_part(part, translate) for part in found.groups()))
+        if found is not None:
+            return translate(template).format(*(_part(part, translate, parts) for part in found.groups()))
     return ""
 
 
-def _modifier(text: str, translate: Translate) -> str:
-    """The refusal of a modifier; empty for other texts."""
+def _modifier(text: str, translate: Translate, parts: list[str]) -> str:
+    """The template of a modifier's refusal; empty for other texts."""
     found = _MODIFIER.fullmatch(text)
-    reason = _filled(found[3], translate) if found is not None else ""
-    return f'{translate(found[1])} "{found[2]}" {reason}' if found is not None and reason else ""
+    reason = _template(found[3], translate, parts) if found is not None else ""
+    if found is None or not reason:
+        return ""
+    return f'{_placeholder(translate(found[1]), parts)} "{_placeholder(found[2], parts)}" {reason}'
 
 
-def _part(part: str, translate: Translate) -> str:
-    """A part that varies: a name, a number, a word of Blender, or a message within the message."""
+def _part(part: str, translate: Translate, parts: list[str]) -> str:
+    """The placeholder of a name, a number or a word of Blender, or the template of a message within the message."""
     if part in BLENDERS:
-        return translate(part.capitalize())
-    return _filled(part, translate) or part
+        return _placeholder(translate(part.capitalize()), parts)
+    return _template(part, translate, parts) or _placeholder(part, parts)
+
+
+def _placeholder(part: str, parts: list[str]) -> str:
+    """Add a part; returns its {number} for a template, because translations change the order."""
+    parts.append(part)
+    return f"{{{len(parts) - 1}}}"
 
 
 @functools.cache

@@ -20,6 +20,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "已恢复到最后的无相交状态：{}",
     "bodies that may overlap would overlap more than at the start": "已排除的物体会比开始时重叠更多",
     "cannot be welded in Edit Mode; use Merge by Distance": "编辑模式中无法焊接；请使用“按距离合并”",
+    "cannot move along; use Blender's own transform": "无法一起移动；请用 Blender 移动",
     "changes topology; apply it": "会改变拓扑；请应用它",
     "collisions stay off: {}": "碰撞保持关闭：{}",
     'constraint "{}" determines its transform; disable it': "约束“{}”决定其变换；请禁用它",
@@ -98,6 +99,7 @@ MESSAGES = {
     "no movable vertex is selected; select some, or leave Edit Mode": "未选择可移动的顶点；请选择，或离开编辑模式",
     "no shape key is given a value; name at least one": "没有给任何形态键赋值；请至少指定一个",
     "no surface to place on; select it too, before the object to copy": "没有可放置的表面；请在要复制的物体之前选择它",
+    "no surface; also select an object that has one": "没有表面；请同时选择有表面的物体",
     'no vertex of "{}" can be a handle; change its weights': "“{}”中没有顶点可作控制柄；请更改其权重",
     "nothing movable is selected; select an object with a surface": "未选择可移动的内容；请选择有表面的物体",
     "nothing movable is selected; select vertices, points or objects with a surface": "未选择可移动的内容；请选择顶点、点或有表面的物体",
@@ -164,6 +166,4 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{}使用“{}”；请取消选择其一",
     "{} vertices follow": "{} 个顶点跟随",
     "{} vertices, {} has {}; use another target": "{} 个顶点，{} 有 {} 个；请使用其他目标物",
-    "{}{}: cannot move along; use Blender's own transform": "{}{}：无法一起移动；请用 Blender 移动",
-    "{}{}: no surface; also select an object that has one": "{}{}：没有表面；请同时选择有表面的物体",
 }

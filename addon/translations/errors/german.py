@@ -20,6 +20,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "zurück zum letzten Zustand ohne Überschneidungen: {}",
     "bodies that may overlap would overlap more than at the start": "ausgenommene Objekte würden sich mehr überlappen als am Anfang",
     "cannot be welded in Edit Mode; use Merge by Distance": "kann im Bearbeitungsmodus nicht verschweißt werden; Nach Abstand zusammenführen",
+    "cannot move along; use Blender's own transform": "kann nicht mitbewegt werden; mit Blender bewegen",
     "changes topology; apply it": "ändert die Topologie; anwenden",
     "collisions stay off: {}": "Kollisionen bleiben aus: {}",
     'constraint "{}" determines its transform; disable it': 'Constraint "{}" bestimmt die Transformation; deaktivieren',
@@ -98,6 +99,7 @@ MESSAGES = {
     "no movable vertex is selected; select some, or leave Edit Mode": "kein beweglicher Vertex ausgewählt; auswählen oder den Bearbeitungsmodus verlassen",
     "no shape key is given a value; name at least one": "kein Formschlüssel erhält einen Wert; mindestens einen nennen",
     "no surface to place on; select it too, before the object to copy": "keine Oberfläche zum Verteilen; auch auswählen, vor dem zu kopierenden Objekt",
+    "no surface; also select an object that has one": "keine Oberfläche; auch ein Objekt mit Oberfläche auswählen",
     'no vertex of "{}" can be a handle; change its weights': 'kein Vertex von "{}" kann Griff sein; die Gewichte ändern',
     "nothing movable is selected; select an object with a surface": "nichts Bewegliches ausgewählt; ein Objekt mit Oberfläche auswählen",
     "nothing movable is selected; select vertices, points or objects with a surface": "nichts Bewegliches ausgewählt; Vertices, Punkte oder Objekte mit Oberfläche auswählen",
@@ -164,6 +166,4 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{} verwendet "{}"; eines abwählen',
     "{} vertices follow": "{} Vertices folgen",
     "{} vertices, {} has {}; use another target": "{} Vertices, {} hat {}; anderes Ziel verwenden",
-    "{}{}: cannot move along; use Blender's own transform": "{}{}: kann nicht mitbewegt werden; mit Blender bewegen",
-    "{}{}: no surface; also select an object that has one": "{}{}: keine Oberfläche; auch ein Objekt mit Oberfläche auswählen",
 }

@@ -20,6 +20,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "最後の交差のない状態に戻しました: {}",
     "bodies that may overlap would overlap more than at the start": "除外したオブジェクトの重なりが開始時より深くなります",
     "cannot be welded in Edit Mode; use Merge by Distance": "編集モードでは結合できません。「距離でマージ」を使ってください",
+    "cannot move along; use Blender's own transform": "一緒に移動できません。Blender で移動してください",
     "changes topology; apply it": "がトポロジーを変えます。適用してください",
     "collisions stay off: {}": "コリジョンはオフのままです: {}",
     'constraint "{}" determines its transform; disable it': "コンストレイント「{}」がトランスフォームを決めています。無効にしてください",
@@ -98,6 +99,7 @@ MESSAGES = {
     "no movable vertex is selected; select some, or leave Edit Mode": "動かせる頂点が選択されていません。選択するか、編集モードを終了してください",
     "no shape key is given a value; name at least one": "値を持つシェイプキーがありません。1つ以上指定してください",
     "no surface to place on; select it too, before the object to copy": "配置先のサーフェスがありません。コピー元より先に選択してください",
+    "no surface; also select an object that has one": "サーフェスがありません。サーフェスのあるオブジェクトも選択してください",
     'no vertex of "{}" can be a handle; change its weights': "「{}」の頂点はハンドルにできません。ウェイトを変えてください",
     "nothing movable is selected; select an object with a surface": "動かせるものが選択されていません。サーフェスのあるオブジェクトを選択してください",
     "nothing movable is selected; select vertices, points or objects with a surface": "動かせるものが選択されていません。頂点、ポイント、サーフェスのあるオブジェクトを選択してください",
@@ -164,6 +166,4 @@ MESSAGES = {
     '{} uses "{}"; deselect one': "{} が「{}」を使っています。一方の選択を解除してください",
     "{} vertices follow": "{} 頂点が従います",
     "{} vertices, {} has {}; use another target": "頂点 {} 個ですが {} は {} 個です。別のターゲットを使ってください",
-    "{}{}: cannot move along; use Blender's own transform": "{}{}: 一緒に移動できません。Blender で移動してください",
-    "{}{}: no surface; also select an object that has one": "{}{}: サーフェスがありません。サーフェスのあるオブジェクトも選択してください",
 }

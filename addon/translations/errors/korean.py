@@ -20,6 +20,7 @@ MESSAGES = {
     "back to the last state without intersections: {}": "교차 없는 마지막 상태로 복원함: {}",
     "bodies that may overlap would overlap more than at the start": "제외된 오브젝트가 시작할 때보다 더 겹치게 됨",
     "cannot be welded in Edit Mode; use Merge by Distance": "에디트 모드에서는 용접할 수 없음; 거리로 병합을 사용하세요",
+    "cannot move along; use Blender's own transform": "함께 이동할 수 없음; Blender로 이동하세요",
     "changes topology; apply it": "이(가) 토폴로지를 바꿈; 적용하세요",
     "collisions stay off: {}": "충돌이 꺼진 상태로 유지됨: {}",
     'constraint "{}" determines its transform; disable it': '컨스트레인트 "{}"이(가) 변환을 결정함; 비활성화하세요',
@@ -98,6 +99,7 @@ MESSAGES = {
     "no movable vertex is selected; select some, or leave Edit Mode": "움직일 수 있는 버텍스가 선택되지 않음; 선택하거나 에디트 모드를 나가세요",
     "no shape key is given a value; name at least one": "값이 주어진 모양 키가 없음; 하나 이상 지정하세요",
     "no surface to place on; select it too, before the object to copy": "배치할 표면이 없음; 복사할 오브젝트보다 먼저 선택하세요",
+    "no surface; also select an object that has one": "표면이 없음; 표면이 있는 오브젝트도 선택하세요",
     'no vertex of "{}" can be a handle; change its weights': '"{}"의 버텍스를 핸들로 쓸 수 없음; 웨이트를 바꾸세요',
     "nothing movable is selected; select an object with a surface": "움직일 수 있는 것이 선택되지 않음; 표면이 있는 오브젝트를 선택하세요",
     "nothing movable is selected; select vertices, points or objects with a surface": "움직일 수 있는 것이 선택되지 않음; 버텍스, 점 또는 표면이 있는 오브젝트를 선택하세요",
@@ -164,6 +166,4 @@ MESSAGES = {
     '{} uses "{}"; deselect one': '{}이(가) "{}"을(를) 사용함; 하나를 선택 해제하세요',
     "{} vertices follow": "버텍스 {}개가 따라감",
     "{} vertices, {} has {}; use another target": "버텍스 {}개, {}은(는) {}개; 다른 대상을 사용하세요",
-    "{}{}: cannot move along; use Blender's own transform": "{}{}: 함께 이동할 수 없음; Blender로 이동하세요",
-    "{}{}: no surface; also select an object that has one": "{}{}: 표면이 없음; 표면이 있는 오브젝트도 선택하세요",
 }

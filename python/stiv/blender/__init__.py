@@ -44,6 +44,7 @@ from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.lattice_reading import read_selected_lattice_points
+from stiv.blender.scene.message_fitting import fit_message
 from stiv.blender.scene.modifier_stack import UnsupportedStackError
 from stiv.blender.scene.pose_bones import moved_bones, select_bones
 from stiv.blender.scene.references import SceneChangedError
@@ -130,6 +131,7 @@ __all__ = [
     "find_intersections",
     "find_without_surface",
     "fit_into",
+    "fit_message",
     "follow",
     "free_kept_data",
     "guard_result",

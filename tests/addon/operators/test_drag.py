@@ -99,6 +99,7 @@ def edit() -> FakeEdit:
 def started(monkeypatch: pytest.MonkeyPatch, edit: FakeEdit) -> Iterator[tuple[Probe, Context]]:
     stand_in = SimpleNamespace(SceneChangedError=KeyError, Task=Task, kept_twins=nullcontext)
     stand_in.is_cut_by_topology = lambda result: False
+    stand_in.fit_message = str.format
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(
         drag, "requested_transform", lambda state, *rest: Value(value=state.pointer.effective[0] / 100.0)

@@ -17,6 +17,7 @@ import mathutils  # noqa: E402
 import stiv_addon  # noqa: E402
 from stiv import InputError  # noqa: E402
 from stiv.blender.scene.lattice_reading import read_selected_lattice_points  # noqa: E402
+from stiv.blender.scene.message_fitting import fit_message  # noqa: E402
 from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
@@ -112,6 +113,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     plain |= {"read_selected_lattice_points": read_selected_lattice_points}
     plain |= {"unguarded_text": lambda *_: "", "find_without_surface": lambda context: ()}
     stand_in = SimpleNamespace(BlenderEdit=RecordingEdit, SceneChangedError=KeyError, run_steps=run, **plain)
+    stand_in.fit_message = fit_message
     stand_in.is_cut_by_topology = lambda result: False
     stand_in.free_kept_data = lambda: None
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)

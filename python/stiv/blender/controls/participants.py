@@ -11,6 +11,7 @@ from stiv.blender.controls.bone_set import find_posed_rigs
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.scene.evaluations import SURFACE_TYPES, is_active, is_visible
 from stiv.blender.scene.followers import can_follow, reached
+from stiv.blender.scene.message_fitting import first_and_others, fit_message
 from stiv.blender.scene.references import ObjectReference, type_name
 from stiv.blender.settings import EditSettings
 
@@ -64,8 +65,7 @@ def nothing_movable(names: Sequence[str]) -> InputError:
     """The error for a selection that cannot move, from the names of selected objects without a surface."""
     if not names:
         return InputError("nothing movable is selected; select an object with a surface")
-    others = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    return InputError(f"{names[0]}{others}: no surface; also select an object that has one")
+    return InputError(fit_message("{}{}: no surface; also select an object that has one", *first_and_others(names)))
 
 
 def _check_names(context: bpy.types.Context, settings: EditSettings) -> None:

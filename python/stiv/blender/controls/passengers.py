@@ -13,6 +13,7 @@ from stiv.blender.controls.participants import followed_objects, may_have_surfac
 from stiv.blender.controls.rigid_groups import RigidGroup, join_groups
 from stiv.blender.controls.transform_locks import can_rotate, is_location_locked
 from stiv.blender.scene.arrays import Floats, as_matrix
+from stiv.blender.scene.message_fitting import first_and_others, fit_message
 
 
 def leave_held_passengers(
@@ -32,9 +33,14 @@ def leave_held_passengers(
         return list(participants), ""
     held = [each for each in passengers if not _moves_along(each.reference.find(), solid[0], kind)]
     named = [each.reference.name for each in held if not is_location_locked(each.reference.find())]
-    others = f" and {len(named) - 1} more" if len(named) > 1 else ""
-    note = f"{named[0]}{others}: cannot move along; use Blender's own transform" if named else ""
-    return [each for each in participants if each not in held], note
+    return [each for each in participants if each not in held], _held_note(named)
+
+
+def _held_note(names: Sequence[str]) -> str:
+    """The note on passengers that are left out; "" without any."""
+    if not names:
+        return ""
+    return fit_message("{}{}: cannot move along; use Blender's own transform", *first_and_others(names))
 
 
 def _moves_along(ob: bpy.types.Object, first: bpy.types.Object, kind: str) -> bool:

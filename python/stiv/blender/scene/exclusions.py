@@ -14,10 +14,10 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import PART, Element, FacePair
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
+from stiv.blender.scene.message_fitting import first_and_others, fit_message
 from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.settings import Exclusions, FaceKey
 
-MOST_CHARACTERS = 80  # of a message in Blender
 _MOST_NOTES = 3  # of one kind that name objects
 
 
@@ -55,16 +55,12 @@ def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, s
 
 def intersection_text(first: str, second: str, count: int, ending: str = "") -> str:
     """ "A cuts B, 12 faces" with an ending, shortened to the length of a message in Blender."""
-    text = f", {count} faces{ending}"
-    most = (MOST_CHARACTERS - len(text) - len(" cuts ")) // 2
-    return f"{shortened(first, most)} cuts {shortened(second, most)}{text}"
+    return fit_message("{} cuts {}" + f", {count} faces{ending}", first, second)
 
 
 def loose_geometry_text(first: str, second: str) -> str:
     """The message about loose edges or vertices of the first object that cut the second, which may be the same."""
-    text = "{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose"
-    most = (MOST_CHARACTERS - len(text.format("", ""))) // 2
-    return text.format(shortened(first, most), shortened(second, most))
+    return fit_message("{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose", first, second)
 
 
 def intersection_notes(excluded: Exclusions, moving: Collection[str]) -> tuple[str, ...]:
@@ -92,18 +88,12 @@ def _first_of(notes: list[str], rest: str) -> list[str]:
 
 def _intersection_note(first: str, second: str, count: int) -> str:
     if first == second:
-        text = f" intersects itself, {count} faces, left as it is"
-        return shortened(first, MOST_CHARACTERS - len(text)) + text
+        return fit_message("{}" + f" intersects itself, {count} faces, left as it is", first)
     return intersection_text(first, second, count, ", may only part")
 
 
-def shortened(name: str, most: int) -> str:
-    """A name that is not longer than a number of characters."""
-    return name if len(name) <= most else f"{name[: most - 1]}…"
-
-
 def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exclusions, str]:
-    """Drop the pairs of objects whose faces have changed; also returns a message that names these objects, or "".
+    """Drop the pairs of objects whose faces have changed; also returns a message about these objects, or "".
 
     Pairs of hidden objects remain and have no effect.
     """
@@ -113,8 +103,11 @@ def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exc
         return excluded, ""
     pairs = frozenset(pair for pair in excluded.pairs if not {name for name, _ in pair} & stale)
     shapes = {name: shape for name, shape in excluded.shapes.items() if name not in stale}
-    names = ", ".join(sorted(stale))
-    return Exclusions(pairs, shapes), f"{names}: the faces have changed, so their exclusions are dropped"
+    return Exclusions(pairs, shapes), _stale_text(sorted(stale))
+
+
+def _stale_text(names: Sequence[str]) -> str:
+    return fit_message("{}{}: the faces have changed, so their exclusions are dropped", *first_and_others(names))
 
 
 def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> Indices:

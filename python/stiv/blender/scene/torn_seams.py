@@ -12,7 +12,8 @@ import stiv
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import ROUNDING, Assembly
 from stiv.blender.scene.elements import Element, FacePair, count_faces
-from stiv.blender.scene.exclusions import MOST_CHARACTERS, excluded_within, shortened
+from stiv.blender.scene.exclusions import excluded_within
+from stiv.blender.scene.message_fitting import fit_message
 from stiv.blender.scene.triangulation_flips import is_deformable
 from stiv.blender.settings import Exclusions
 from stiv.seams import find_seams, seam_pairs
@@ -34,8 +35,7 @@ def torn_seam_note(assembly: Assembly, excluded: Exclusions, q: Floats, threads:
 
 
 def _message(name: str, count: int) -> str:
-    text = f": {count:,} faces at torn seams cut each other; use Merge by Distance"
-    return shortened(name, MOST_CHARACTERS - len(text)) + text
+    return fit_message("{}" + f": {count:,} faces at torn seams cut each other; use Merge by Distance", name)
 
 
 def self_cuts(points: Floats, corners: Indices, faces: Indices, threads: int = 0) -> set[_Faces]:
