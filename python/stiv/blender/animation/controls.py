@@ -11,8 +11,8 @@ import mathutils
 import numpy as np
 
 import stiv
-from stiv import InputError
 from stiv.blender.animation.tracks import Track, lasting_seams
+from stiv.blender.controls.object_transform import check_axes
 from stiv.blender.controls.rotations import (
     affine_about,
     nearest_equivalent,
@@ -24,7 +24,7 @@ from stiv.blender.scene.arrays import Floats, as_matrix, transform_points
 from stiv.blender.scene.dependencies import ancestors
 from stiv.seams import Seams
 
-SHEAR = 1e-4  # maximum deviation of a placement from location, rotation and scale, relative to its size
+RIGHT_ANGLE = 1e-4  # cosine of an angle that still is one: frames of rigs are less accurate than objects at rest
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,8 @@ def make_moving_sets(tracks: Sequence[Track], hold: Collection[str]) -> list[Mov
 
 def stored_placement(ob: bpy.types.Object, matrix: Floats) -> tuple[mathutils.Vector, ...]:
     """Location, rotation (a quaternion) and scale of a world matrix. Raises InputError if the matrix is sheared."""
+    check_axes(ob.name, matrix, RIGHT_ANGLE)
     parts: tuple[mathutils.Vector, ...] = mathutils.Matrix(matrix.tolist()).decompose()
-    rebuilt = as_matrix(mathutils.Matrix.LocRotScale(*parts))
-    if np.abs(rebuilt - matrix).max() > SHEAR * np.abs(matrix).max():
-        raise InputError(f"{ob.name}: its parent shears it; apply its transform, or clear the parent")
     return parts
 
 

@@ -67,11 +67,14 @@ def read_transform(ob: bpy.types.Object) -> ObjectTransform:
     )  # fmt: skip
 
 
-def check_axes(name: str, world: Floats) -> None:
-    """Raise InputError for an object with this world matrix, (4, 4), unless its axes are at right angles."""
+def check_axes(name: str, world: Floats, right_angle: float = RIGHT_ANGLE) -> None:
+    """Raise InputError for an object with this world matrix, (4, 4), unless its axes are at right angles.
+
+    right_angle: cosine of an angle that still is one.
+    """
     axes = world[:3, :3] / np.maximum(np.linalg.norm(world[:3, :3], axis=0), np.finfo(float).tiny)
     products = axes.T @ axes
-    if np.abs(products - np.diag(np.diag(products))).max() > RIGHT_ANGLE:
+    if np.abs(products - np.diag(np.diag(products))).max() > right_angle:
         raise InputError(f"{name}: its parent shears it; apply its transform")
 
 

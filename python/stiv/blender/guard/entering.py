@@ -19,7 +19,7 @@ from stiv.blender.guard.known_intersections import KnownIntersections, find_inte
 from stiv.blender.guard.new_parts import copied_from
 from stiv.blender.guard.part_path import slide_part
 from stiv.blender.guard.scene_state import ObjectState, SceneState, read_object, read_state
-from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles
+from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles, translation_matrix
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference
@@ -196,10 +196,8 @@ def place_freely(
     before = [read_object(ob) for ob in roots]
     if any(ob.library is not None for ob in roots):
         return False
-    motion = np.eye(4)
-    motion[:3, 3] = translation
     for ob in roots:
-        write_transform(ob, read_transform(ob), motion, np.ones(3))
+        write_transform(ob, read_transform(ob), translation_matrix(translation), np.ones(3))
     context.view_layer.update()
     if touches_others(known.fresh(find_intersections(context, settings)), names):
         for state in before:

@@ -12,7 +12,7 @@ from stiv import InputError
 from stiv.blender.controls.editable import check_unkeyed
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, translation_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.face_pairs import find_face_pairs
@@ -74,9 +74,7 @@ def _write(
     context: bpy.types.Context, edit: BlenderEdit, surfaces: Assembly, translation: Floats, settings: EditSettings
 ) -> None:
     """Translate, and test what Blender shows; if it intersects, restore and raise InputError."""
-    matrix = np.eye(4)
-    matrix[:3, 3] = translation
-    edit.drag(matrix)
+    edit.drag(translation_matrix(translation))
     edit.write()
     left = find_face_pairs(surfaces, read_shown(context, surfaces), settings.threads)
     if left:

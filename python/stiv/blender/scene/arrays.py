@@ -13,7 +13,7 @@ from stiv.points import apply_linear, transform_points
 
 __all__ = [
     "Flags", "Floats", "Indices", "Singles", "apply_linear", "as_matrix", "diagonal_of", "digest", "extents", "invert",
-    "islands", "read_collection", "to_local", "transform_points",
+    "islands", "read_collection", "to_local", "transform_points", "translation_matrix",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
@@ -25,6 +25,13 @@ Flags = NDArray[np.bool_]
 def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:
     """Blender's 4x4 matrix, or any nested sequence, in double precision."""
     return np.array([list(row) for row in matrix], dtype=np.float64)
+
+
+def translation_matrix(translation: Floats) -> Floats:
+    """The matrix, (4, 4), of a translation, (3,)."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = translation
+    return matrix
 
 
 def invert(matrix: Floats) -> Floats:
