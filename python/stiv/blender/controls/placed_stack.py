@@ -133,28 +133,24 @@ class _PlacedTwin:
     def __init__(self, reference: ObjectReference, evaluation: str, movers: Sequence[ObjectReference]) -> None:
         ob, scene = reference.find(), bpy.context.scene
         moved = [] if reference in movers else between(ob, {each.session_uid for each in movers})
-        self._copies = EvaluationCopies(scene, evaluation)
+        self.copies = EvaluationCopies(scene, evaluation)
         try:
             copied = dict.fromkeys([ob, *different_objects(ob, scene, evaluation), *moved])
-            self._copies.fill([*copied], lambda other: other == ob)
+            self.copies.fill([*copied], lambda other: other == ob)
         except BaseException:
-            self._copies.remove()
+            self.copies.remove()
             raise
-        self._ob = self._copies.copy_of(reference)
+        self._ob = self.copies.copy_of(reference)
         numbers = {each.session_uid for each in copied}
-        self._movers = [self._copies.copy_of(each) if each.session_uid in numbers else None for each in movers]
+        self._movers = [self.copies.copy_of(each) if each.session_uid in numbers else None for each in movers]
 
     def evaluate(self, places: Sequence[Floats]) -> tuple[EvaluatedStack, Floats]:
         """The evaluation with the movers at world matrices, (4, 4) each, and the evaluated matrix."""
         for mover, place in zip(self._movers, places, strict=True):
             if mover is not None:
                 mover.matrix_world = mathutils.Matrix(place.tolist())
-        graph = self._copies.depsgraph
+        graph = self.copies.depsgraph
         graph.update()
         shown = self._ob.evaluated_get(graph)
         with evaluated_mesh(shown) as mesh:
             return EvaluatedStack(read_positions(mesh), *read_corners(mesh)), as_matrix(shown.matrix_world)
-
-    def remove(self) -> None:
-        """Remove the copy and its scene."""
-        self._copies.remove()

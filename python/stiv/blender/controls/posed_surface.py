@@ -357,27 +357,27 @@ class RigTwin:
         own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
         own_data += [ob for ob in objects if ob.name in worn and ob not in own_data]
         wanted = {each.session_uid for each in (*shown, *rigs)}
-        self._copies = EvaluationCopies(scene, evaluation, own_data)
+        self.copies = EvaluationCopies(scene, evaluation, own_data)
         try:
-            self._copies.fill(objects, lambda ob: ob.session_uid in wanted)
-            self._rigs = {each.session_uid: self._copies.copy_of(each) for each in rigs}
-            self._worn = {ob.name: self._copies.copy_of(ObjectReference.of(ob)) for ob in objects if ob.name in worn}
+            self.copies.fill(objects, lambda ob: ob.session_uid in wanted)
+            self._rigs = {each.session_uid: self.copies.copy_of(each) for each in rigs}
+            self._worn = {ob.name: self.copies.copy_of(ObjectReference.of(ob)) for ob in objects if ob.name in worn}
             self._shown = {each.session_uid for each in shown}
         except BaseException:
-            self._copies.remove()
+            self.copies.remove()
             raise
 
     def evaluate(self, pose: Iterator[tuple[BoneChannels, Floats]]) -> Iterator[tuple[ObjectReference, _PosedMesh]]:
         """The meshes in a pose, with their owners."""
         for bone, channels in pose:
             bone.write(channels, self._rigs[bone.rig.session_uid].pose.bones[bone.name])
-        graph = self._copies.depsgraph
+        graph = self.copies.depsgraph
         graph.update()
         for instance in graph.object_instances:
             if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
                 continue
             copy = instance.parent.original if instance.is_instance else instance.object.original
-            owner = self._copies.owner(copy)
+            owner = self.copies.owner(copy)
             if owner.session_uid in self._shown:
                 with evaluated_mesh(instance.object) as mesh:
                     stack = EvaluatedStack(read_positions(mesh), read_corner_vertices(mesh), _count(mesh.polygons))
@@ -389,7 +389,7 @@ class RigTwin:
 
     def local_matrices(self) -> dict[tuple[int, str], Floats]:
         """The matrix of each bone relative to its parent, by rig and name."""
-        graph, found = self._copies.depsgraph, {}
+        graph, found = self.copies.depsgraph, {}
         for number, rig in self._rigs.items():
             for bone in rig.evaluated_get(graph).pose.bones:
                 if bone.parent is not None:
@@ -399,11 +399,7 @@ class RigTwin:
     def weights(self, owner: ObjectReference, count: int) -> tuple[list[str], Floats]:
         """Names of the bones that have vertex groups, and their weights, (n, g), at n evaluated vertices."""
         bones = {bone.name for rig in self._rigs.values() for bone in rig.data.bones}
-        return skin_weights(self._copies.evaluated(owner), bones, count)
-
-    def remove(self) -> None:
-        """Remove the copies and their scene."""
-        self._copies.remove()
+        return skin_weights(self.copies.evaluated(owner), bones, count)
 
 
 def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) -> tuple[list[str], Floats]:

@@ -9,8 +9,8 @@ Rendered objects that the viewport hides follow their keyframes.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import bpy
@@ -76,7 +76,14 @@ class EvaluationCopies:
 
     def remove(self) -> None:
         """Remove all copies."""
-        bpy.data.batch_remove(self._made)
+        remove_copies([self])
+
+    @property
+    def made(self) -> list[bpy.types.ID]:
+        """All that was made. Raises ReferenceError if undo or another file has removed it."""
+        for each in self._made:
+            each.session_uid  # noqa: B018 (raises)
+        return self._made
 
     def _copy_settings(self, home: bpy.types.Scene) -> None:
         with _negative_frames():
@@ -163,6 +170,15 @@ class EvaluationCopies:
                 if self._evaluation != RENDER or not child.hide_render:
                     made.children.link(self._collection(child))
         return self._collections[collection.name_full]
+
+
+def remove_copies(copies: Iterable[EvaluationCopies]) -> None:
+    """Remove all copies at once: each removal takes Blender a look at every user in the file."""
+    made: list[bpy.types.ID] = []
+    for each in copies:
+        with suppress(ReferenceError):
+            made += each.made
+    bpy.data.batch_remove(made)
 
 
 def _has_data_to_copy(ob: bpy.types.Object) -> bool:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Protocol, TypeVar, cast
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Indices, Singles, read_collection
 from stiv.blender.scene.dependencies import add_dependents, shape_dependencies
-from stiv.blender.scene.evaluation_copies import EvaluationCopies
+from stiv.blender.scene.evaluation_copies import EvaluationCopies, remove_copies
 from stiv.blender.scene.evaluations import SHOWN, signature
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corners, read_positions
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
@@ -66,18 +66,18 @@ class StackTwin:
     def __init__(self, ob: bpy.types.Object, scene: bpy.types.Scene, evaluation: str) -> None:
         """Copy the object as an evaluation of the scene shows it. Use `open_twin`, or call `remove` at the end."""
         reference = ObjectReference.of(ob)
-        self._copies = EvaluationCopies(scene, evaluation, own_data=[ob])
+        self.copies = EvaluationCopies(scene, evaluation, own_data=[ob])
         try:
-            self._copies.fill([ob, *different_objects(ob, scene, evaluation)], lambda other: other == ob)
+            self.copies.fill([ob, *different_objects(ob, scene, evaluation)], lambda other: other == ob)
         except BaseException:
-            self._copies.remove()
+            self.copies.remove()
             raise
-        self.ob = self._copies.copy_of(reference)
+        self.ob = self.copies.copy_of(reference)
         _remove_keys(self.ob)  # positions are those that the keys show
 
     def remove(self) -> None:
         """Remove the copy and its scene."""
-        self._copies.remove()
+        self.copies.remove()
 
     def show_modifiers(self, names: Collection[str], show: bool) -> None:
         """Switch modifiers on or off."""
@@ -97,7 +97,7 @@ class StackTwin:
         """
         mesh = self.ob.data
         if len(mesh.vertices) != len(local):
-            raise SceneChangedError(f"{self._copies.owner(self.ob).name} changed its number of vertices")
+            raise SceneChangedError(f"{self.copies.owner(self.ob).name} changed its number of vertices")
         mesh.vertices.foreach_set("co", np.ascontiguousarray(local, np.float32).ravel())
         mesh.update()
 
@@ -119,7 +119,7 @@ class StackTwin:
     @contextmanager
     def evaluated(self) -> Iterator[bpy.types.Mesh]:
         """The evaluated mesh, valid inside the `with` statement."""
-        graph = self._copies.depsgraph
+        graph = self.copies.depsgraph
         graph.update()
         with evaluated_mesh(self.ob.evaluated_get(graph)) as mesh:
             yield mesh
@@ -128,8 +128,9 @@ class StackTwin:
 class Twin(Protocol):
     """A hidden copy that is removed at the end."""
 
-    def remove(self) -> None:
-        """Remove the copy and its scene."""
+    @property
+    def copies(self) -> EvaluationCopies:
+        """The copy with its scene."""
 
 
 T = TypeVar("T", bound=Twin)
@@ -161,10 +162,9 @@ def kept_twin(owner: object, make: Callable[[], T]) -> T:
 
 
 def _remove_kept() -> None:
-    while _kept:
-        _, twin = _kept.popitem()
-        with suppress(ReferenceError):  # undo or another file has removed it
-            twin.remove()
+    copies = [twin.copies for twin in _kept.values()]
+    _kept.clear()
+    remove_copies(copies)
 
 
 def _remove_keys(ob: bpy.types.Object) -> None:
