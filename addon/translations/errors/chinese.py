@@ -108,6 +108,7 @@ MESSAGES = {
     "only meshes can be reshaped; convert it to a mesh": "只有网格可以改变形状；请转换为网格",
     'only meshes follow lattice "{}"; convert it to a mesh': "只有网格跟随晶格“{}”；请转换为网格",
     "only meshes have handles; choose another deformation": "只有网格有控制柄；请选择其他变形方式",
+    'only moves together with "{}"; choose another pivot': "只能与“{}”一起移动；请选择其他枢轴点",
     "only the render intersects; set Guard to Viewport to leave it out": "只有渲染相交；将保护设为视口可将其排除",
     "precedes a subdivision; apply it": "位于细分之前；请应用它",
     'projects onto "{}"; edit that': "投影到“{}”；请编辑后者",

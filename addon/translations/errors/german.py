@@ -108,6 +108,7 @@ MESSAGES = {
     "only meshes can be reshaped; convert it to a mesh": "nur Meshes lassen sich umformen; in ein Mesh umwandeln",
     'only meshes follow lattice "{}"; convert it to a mesh': 'nur Meshes folgen dem Gitter "{}"; in ein Mesh umwandeln',
     "only meshes have handles; choose another deformation": "nur Meshes haben Griffe; andere Verformung wählen",
+    'only moves together with "{}"; choose another pivot': 'bewegt sich nur zusammen mit "{}"; anderen Pivotpunkt wählen',
     "only the render intersects; set Guard to Viewport to leave it out": "nur das Rendern schneidet sich; Schutz auf Ansicht stellen",
     "precedes a subdivision; apply it": "steht vor einer Unterteilung; anwenden",
     'projects onto "{}"; edit that': 'projiziert auf "{}"; dieses bearbeiten',

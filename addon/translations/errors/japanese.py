@@ -108,6 +108,7 @@ MESSAGES = {
     "only meshes can be reshaped; convert it to a mesh": "形状を変えられるのはメッシュだけです。メッシュに変換してください",
     'only meshes follow lattice "{}"; convert it to a mesh': "ラティス「{}」に従うのはメッシュだけです。メッシュに変換してください",
     "only meshes have handles; choose another deformation": "ハンドルはメッシュだけです。別の変形方法を選んでください",
+    'only moves together with "{}"; choose another pivot': "「{}」と一緒にしか動きません。別のピボットポイントを選んでください",
     "only the render intersects; set Guard to Viewport to leave it out": "交差はレンダーだけです。保護を「ビューポート」にすると除外できます",
     "precedes a subdivision; apply it": "がサブディビジョンの前にあります。適用してください",
     'projects onto "{}"; edit that': "が「{}」に投影しています。そちらを編集してください",

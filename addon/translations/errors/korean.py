@@ -108,6 +108,7 @@ MESSAGES = {
     "only meshes can be reshaped; convert it to a mesh": "메쉬만 형태를 바꿀 수 있음; 메쉬로 변환하세요",
     'only meshes follow lattice "{}"; convert it to a mesh': '메쉬만 래티스 "{}"을(를) 따름; 메쉬로 변환하세요',
     "only meshes have handles; choose another deformation": "메쉬에만 핸들이 있음; 다른 변형 방식을 선택하세요",
+    'only moves together with "{}"; choose another pivot': '"{}"와(과) 함께만 움직임; 다른 피벗 포인트를 선택하세요',
     "only the render intersects; set Guard to Viewport to leave it out": "렌더만 교차함; 제외하려면 보호를 뷰포트로 설정하세요",
     "precedes a subdivision; apply it": "이(가) 섭디비전 앞에 있음; 적용하세요",
     'projects onto "{}"; edit that': '이(가) "{}"에 투영함; 그것을 편집하세요',

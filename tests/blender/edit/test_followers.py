@@ -22,7 +22,8 @@ from building import (
     turn,
 )
 
-from stiv.blender import BlenderEdit, EditSettings, check_scene, guard_result
+from stiv import InputError
+from stiv.blender import BlenderEdit, EditSettings, Motion, check_scene, guard_result
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.known_intersections import find_intersections
 
@@ -167,6 +168,33 @@ def test_two_hooks_of_one_mesh_move_together() -> None:
     assert edit.write().passed and 0 < lowest(target) < 0.02
     assert hooks[0].location.z == pytest.approx(hooks[1].location.z) and hooks[0].location.z < 0.05
     np.testing.assert_allclose(evaluated(target)[[1, 3, 5, 7], 2], 3, atol=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["rotate", "scale"])
+def test_hooks_turn_and_scale_about_their_own_origins(kind: str) -> None:
+    target = cube()
+    hooks = [hooked(f"Hook {n}", chosen, target, (0, y, 1)) for n, chosen, y in ((1, (0, 4), -1), (2, (2, 6), 1))]
+    matrix = turn(0.4, "X") if kind == "rotate" else stretch((0.5, 1, 1))
+    motion = Motion(matrix, np.zeros(3), individual=True)
+    select(*hooks)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    places = [tuple(hook.location) for hook in hooks]
+    assert edit.apply(motion).status == "reached" and edit.write().passed
+    assert [tuple(hook.location) for hook in hooks] == places
+    if kind == "rotate":
+        assert [hook.rotation_euler.x for hook in hooks] == pytest.approx([0.4, 0.4], abs=1e-6)
+    else:
+        assert [hook.scale.x for hook in hooks] == pytest.approx([0.5, 0.5])
+
+
+@pytest.mark.parametrize("kind", ["rotate", "scale"])
+def test_objects_that_can_only_move_as_one_have_no_origins_of_their_own(kind: str) -> None:
+    empty, target = below_hook()
+    select(empty, target)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    motion = Motion(turn(0.4, "X") if kind == "rotate" else stretch(1.5), np.zeros(3), individual=True)
+    with pytest.raises(InputError, match=r'^Cube: only moves together with "Hook"; choose another pivot$'):
+        edit.apply(motion)
 
 
 def test_a_mesh_and_its_hook_move_as_one() -> None:

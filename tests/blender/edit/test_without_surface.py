@@ -7,10 +7,10 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, select, shift, snapshot, stretch, turn
+from building import add, add_cube, add_grid, evaluated, select, shift, snapshot, stretch, turn
 
 from stiv import InputError
-from stiv.blender import BlenderEdit, EditSettings
+from stiv.blender import BlenderEdit, EditSettings, Motion
 
 DATA = {
     "hair": lambda: bpy.data.hair_curves.new("Other"),
@@ -129,3 +129,58 @@ def test_a_mesh_that_shows_only_points_is_refused_by_name() -> None:
     select(cube)
     with pytest.raises(InputError, match='Cube: Geometry Nodes "Nodes" shows no surface; disable it'):
         BlenderEdit.begin(bpy.context, EditSettings(object_response="deform"), "move")
+
+
+def deform(**given: Any) -> EditSettings:
+    return EditSettings(object_response="deform", **given)
+
+
+def test_they_move_along_where_everything_deforms() -> None:
+    """The cube stops at the floor and flattens; the camera goes where Blender would put it."""
+    add_grid("Floor", 2, 3.0)
+    cube, camera = add_cube("Cube", (0, 0, 1.5)), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 5))
+    select(cube, camera)
+    start = snapshot()
+    edit = BlenderEdit.begin(bpy.context, deform(), "move")
+    assert edit.apply(shift(z=-1)).status == "corrected" and edit.write().passed and edit.start_notes == ()
+    assert tuple(camera.location) == (4, 0, 4) and evaluated(cube)[:, 2].min() > 0
+    edit.drag(shift(x=1, z=-1))
+    taken = edit.take_state()
+    assert taken is not None and edit.write_taken(taken) is not None
+    assert tuple(camera.location) == (5, 0, 4) and edit.moving == {"Cube"}
+    edit.restore()
+    assert snapshot() == start
+
+
+@pytest.mark.parametrize("individual", [False, True])
+@pytest.mark.parametrize("kind", ["rotate", "scale"])
+@pytest.mark.parametrize("response", ["rigid", "deform"])
+def test_they_turn_and_scale_as_in_blender(kind: str, individual: bool, response: str) -> None:
+    """With individual origins, each of them about its own."""
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(object_response=response), kind)
+    motion = Motion(turn(0.5, "Z") if kind == "rotate" else stretch(1.5), np.zeros(3), individual=individual)
+    assert edit.apply(motion).status == "reached" and edit.write().passed
+    about_pivot = (4 * np.cos(0.5), 4 * np.sin(0.5), 0) if kind == "rotate" else (6, 0, 0)
+    np.testing.assert_allclose(camera.location, (4, 0, 0) if individual else about_pivot, atol=1e-6)
+    assert camera.rotation_euler.z == pytest.approx(0.5 if kind == "rotate" else 0, abs=1e-6)
+    assert camera.scale.x == pytest.approx(1.5 if kind == "scale" else 1)
+
+
+def test_a_turned_camera_scales_along_with_what_deforms() -> None:
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    turned(camera)
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, deform(), "scale")
+    assert edit.apply(stretch(2.0)).status == "reached" and edit.write().passed and edit.passenger_note == ""
+    assert tuple(camera.location) == (8, 0, 0) and tuple(camera.scale) == pytest.approx((2, 2, 2))
+
+
+def test_those_that_cannot_are_named_also_where_everything_deforms() -> None:
+    cube, camera = add_cube("Cube"), add("Camera", bpy.data.cameras.new("Camera"), (4, 0, 0))
+    constrained(camera)
+    select(cube, camera)
+    edit = BlenderEdit.begin(bpy.context, deform(), "move")
+    assert edit.start_notes == (edit.passenger_note,) == ("Camera: cannot move along; use Blender's own transform",)
+    assert edit.apply(shift(x=1)).status == "reached" and edit.write().passed and camera.location.x == 4

@@ -16,10 +16,10 @@ from stiv.blender.controls.curve_points import make_curve_set
 from stiv.blender.controls.editable import shared_data_error
 from stiv.blender.controls.garments import make_garments
 from stiv.blender.controls.handles import make_handle_sets
-from stiv.blender.controls.joined_seams import join_notes, join_seams
+from stiv.blender.controls.joined_seams import join_seams
 from stiv.blender.controls.lattice_modifier import lattice_deformation
 from stiv.blender.controls.lattice_points import check_lattice, make_lattice_set
-from stiv.blender.controls.passengers import add_passengers, leave_held_passengers
+from stiv.blender.controls.passengers import attach_passengers, leave_held_passengers, make_passenger_set
 from stiv.blender.controls.rigid_groups import (
     RigidGroup,
     add_followers,
@@ -69,7 +69,7 @@ def make_control_sets(
     deformed = deforming.union(meshes[index].owner.name for indices in by_lattice.values() for index in indices)
     groups = add_followers(groups, {mesh.owner.name for mesh in meshes}, deformed, context.scene)
     _check_independent(participants, groups, by_lattice, meshes, deforming)
-    groups = add_passengers(groups, {mesh.owner.name for mesh in meshes})
+    groups, passengers = attach_passengers(groups, {mesh.owner.name for mesh in meshes})
     control_sets = [_rigid(group, meshes, settings, kind) for group in groups]
     for participant in participants:
         if participant.role == "cage":
@@ -90,7 +90,9 @@ def make_control_sets(
         _check_surface(control_set, meshes)
         _check_references(control_set, {name for each in control_sets for name in each.names})
     found = [join_seams(each, meshes) for each in control_sets if each.surfaces]
-    noted = [replace(each, note=join_notes(each.note, note)) for each in found[:1]]
+    if any(each.rule.moves for each in found):
+        found += [make_passenger_set(group, settings, kind) for group in passengers]
+    noted = [replace(each, passenger_note=note) for each in found[:1]]
     return [*noted, *found[1:]], groups
 
 

@@ -95,6 +95,7 @@ class ControlSet:
         control_seams: vertices of the object that share a control, so that seams stay closed; None if none do.
         seams: for each of `surfaces`, the vertices that stay together; empty if none do.
         note: message for the user; may be "".
+        passenger_note: message on selected objects without a surface that cannot move along; in the first set.
         weight_axes: axes of (m, 3) weights as columns of rotations, (m, 3, 3); None for the world axes.
         kept: controls that are left of mirrored groups, by their former numbers, (m,); None without mirrored editing.
         observed: the stack of modifiers that Blender evaluates during the edit; None if all are known.
@@ -115,6 +116,7 @@ class ControlSet:
     control_seams: Seams | None = None
     seams: tuple[Seams | None, ...] = ()
     note: str = ""
+    passenger_note: str = ""
     weight_axes: Floats | None = None
     kept: Indices | None = None
     observed: "ObservedStack | None" = None

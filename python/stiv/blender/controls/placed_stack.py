@@ -69,10 +69,12 @@ class _PlacedMesh:
         starts = [mesh.matrix if each == mesh.owner else as_matrix(each.find().matrix_world) for each in movers]
         return cls(mesh.owner, mesh.read_from, movers, tuple(starts))
 
-    def evaluate(self, motion: Floats) -> tuple[EvaluatedStack, Floats]:
-        """The evaluation after a motion, (4, 4), since the start, and its world matrix. Only inside `kept_twins`."""
+    def evaluate(self, motion: PlacementMotion, controls: Floats) -> tuple[EvaluatedStack, Floats]:
+        """The evaluation after a motion since the start, and its world matrix. Only inside `kept_twins`."""
         twin = kept_twin(self, lambda: _PlacedTwin(self.reference, self.evaluation, self.movers))
-        return twin.evaluate([motion @ start for start in self.starts])
+        if self.reference in self.movers:
+            return twin.evaluate([motion.matrix(controls) @ start for start in self.starts])
+        return twin.evaluate([motion.matrix_of(controls, start) @ start for start in self.starts])
 
 
 class _Placements:
@@ -92,19 +94,19 @@ class _Placements:
             for each, movers_of_it in zip(meshes, movers, strict=True)
         ]
         with kept_twins():
-            self._start = [None if each is None else each.evaluate(np.eye(4))[0] for each in self._bent]
+            self._start = [None if each is None else each.evaluate(motion, controls)[0] for each in self._bent]
         self._size = float(np.ptp(np.concatenate(self._rest), axis=0).max(initial=0.0)) or 1.0
 
     def evaluate(self, controls: Floats) -> Floats | None:
         """World positions, (n, 3), from the controls; None if the topology of a mesh differs."""
-        motion = self._motion.matrix(controls)
+        motion = self._motion.matrix(controls)  # of the rigid meshes
         found = []
         with kept_twins():
             for bent, start, rest in zip(self._bent, self._start, self._rest, strict=True):
                 if bent is None or start is None:
                     found.append(transform_points(motion, rest))
                     continue
-                shown, matrix = bent.evaluate(motion)
+                shown, matrix = bent.evaluate(self._motion, controls)
                 if not shown.corresponds_to(start) or not np.isfinite(shown.positions).all():
                     return None
                 found.append(transform_points(matrix, shown.positions))

@@ -14,6 +14,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.directions import ALL_FREE, NONE_FREE, FreeDirections
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.placed_stack import PlacedStack
+from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.controls.response import Response
 from stiv.blender.controls.rotations import nearest_equivalent, nearest_rotation, rotation_vector
@@ -32,9 +33,10 @@ class PlacementGoal:
     Attributes:
         selected: whether the motion moves the group.
         turns: whether the group may rotate.
-        origin: (3,) that of the first root, the pivot for individual origins.
+        origin: (3,) that of the first root with a surface, the pivot for individual origins.
         free: directions that location locks leave free, None for all.
-        up: (3,) unit Z axis of the first root, which alignment turns; None if the group cannot be rotated.
+        up: (3,) unit Z axis of that root, which alignment turns; None if the group cannot be rotated.
+        tied: names of two objects because of which the group can only move as one; None without.
     """
 
     selected: bool
@@ -42,6 +44,7 @@ class PlacementGoal:
     origin: Floats
     free: FreeDirections | None = None
     up: Floats | None = None
+    tied: tuple[str, str] | None = None
 
     @property
     def moves(self) -> bool:
@@ -90,26 +93,44 @@ class PlacementGoal:
         place = motion.free.within(self.free)
         return respond(control_set, place, NONE_FREE, weight)
 
+    def own_origin(self, motion: Motion) -> Floats | None:
+        """The origin, (3,), if each object uses its own as pivot. Raises InputError if the group moves as one."""
+        if not motion.individual:
+            return None
+        if self.tied is not None:
+            raise InputError(f'{self.tied[1]}: only moves together with "{self.tied[0]}"; choose another pivot')
+        return self.origin
+
     def turned(self, controls: Floats, goal: Floats) -> float:
         """Angle in radians by which a selected group rotates though its goal does not."""
         return float(np.linalg.norm(controls[1])) if self.selected and not goal[1].any() else 0.0
 
 
 class PivotDeformation:
-    """Rotation of a group about the pivot of a drag; kept while the pivot stays.
+    """Deformation of a group about the pivot of a drag; kept while the pivot stays.
 
-    `make` returns the deformation about a pivot, (3,), and the stack that Blender evaluates for it, if any.
+    `make` returns the deformation for a motion, and the stack that Blender evaluates for it, if any.
     """
 
-    def __init__(self, make: Callable[[Floats], tuple[stiv.Deformation, PlacedStack | None]]) -> None:
+    def __init__(self, make: Callable[[PlacementMotion], tuple[stiv.Deformation, PlacedStack | None]]) -> None:
         self._make = make
-        self._made: tuple[bytes, tuple[stiv.Deformation, PlacedStack | None]] | None = None
+        self._made: tuple[tuple[object, ...], tuple[stiv.Deformation, PlacedStack | None]] | None = None
 
-    def about(self, pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
-        """The deformation for a pivot, (3,), and its stack; the same objects for the same pivot."""
-        if self._made is None or self._made[0] != pivot.tobytes():
-            self._made = pivot.tobytes(), self._make(pivot)
-        return self._made[1]
+    def given_to(self, control_set: ControlSet, pivot: Floats | None, origin: Floats | None) -> ControlSet:
+        """The control set with the deformation about a pivot, (3,), and None for that of its motion.
+
+        origin: that of the first object, if each object uses its own. The same objects for the same pivot and origin.
+        """
+        assert isinstance(control_set.writer, PlacementWriter)
+        motion = control_set.writer.motion
+        motion = replace(motion, pivot=motion.pivot if pivot is None else pivot, origin=origin)
+        key = motion.pivot.tobytes(), None if origin is None else origin.tobytes()
+        if self._made is None or self._made[0] != key:
+            self._made = key, self._make(motion)
+        deformation, placed = self._made[1]
+        return replace(
+            control_set, deformation=deformation, placed=placed, writer=replace(control_set.writer, motion=motion)
+        )
 
 
 @dataclass(frozen=True)
@@ -139,7 +160,7 @@ class RotationGoal(PlacementGoal):
         """Axis and pivot of the rotation, and whether the axis was chosen; empty if the motion places the origin."""
         if not self.selected or not self.turns or motion.axis is None or motion.place is not None:
             return ()
-        return motion.axis.tobytes(), self._pivot(motion).tobytes(), motion.free is not None
+        return motion.axis.tobytes(), self._pivot(motion).tobytes(), motion.free is not None, motion.individual
 
     def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
         """The angle responds; the axis too if objects may turn on contact and none was chosen."""
@@ -147,15 +168,9 @@ class RotationGoal(PlacementGoal):
         if not self.limits(motion) or axis is None:
             return control_set
         turning = ALL_FREE if self.free_axis and motion.free is None else FreeDirections.line(axis)
-        assert isinstance(control_set.writer, PlacementWriter)
-        deformation, placed = self.about.about(pivot)
-        return replace(
-            respond(control_set, NONE_FREE, turning, weight),
-            deformation=deformation,
-            placed=placed,
-            rule=replace(self, axis=None if turning is ALL_FREE else axis, pivoting=True),
-            writer=replace(control_set.writer, motion=replace(control_set.writer.motion, pivot=pivot)),
-        )
+        pivoting = self.about.given_to(control_set, pivot, self.own_origin(motion))
+        rule = replace(self, axis=None if turning is ALL_FREE else axis, pivoting=True)
+        return replace(respond(pivoting, NONE_FREE, turning, weight), rule=rule)
 
     def _pivot(self, motion: Motion) -> Floats:
         return self.origin if motion.individual else motion.pivot
@@ -163,9 +178,13 @@ class RotationGoal(PlacementGoal):
 
 @dataclass(frozen=True)
 class ScaleGoal(PlacementGoal):
-    """Centre and scale factors along `axes`, (3, 3)."""
+    """Centre and scale factors along `axes`, (3, 3).
+
+    about: makes the deformation for a pivot.
+    """
 
     axes: Floats = field(kw_only=True)
+    about: PivotDeformation = field(kw_only=True)
 
     def second_goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of the factors, (3,). Raises InputError for factors of 0."""
@@ -176,13 +195,17 @@ class ScaleGoal(PlacementGoal):
 
     def limits(self, motion: Motion) -> tuple[object, ...]:
         """The chosen axes, or whether the scale is uniform."""
-        return () if not self.selected else (motion.is_uniform, *(() if motion.free is None else motion.free.key))
+        if not self.selected:
+            return ()
+        return motion.is_uniform, motion.individual, *(() if motion.free is None else motion.free.key)
 
     def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
         """A uniform scale stays uniform; with chosen axes, each of their factors responds."""
         if not self.selected:
             return control_set
         place = ALL_FREE if motion.free is None else motion.free
+        if motion.individual:
+            control_set = self.about.given_to(control_set, None, self.own_origin(motion))
         return respond(control_set, place.within(self.free), self._factors(motion), weight)
 
     def turned(self, controls: Floats, goal: Floats) -> float:

@@ -7,7 +7,7 @@ import numpy as np
 
 from stiv.blender.controls.motion import ROUNDING
 from stiv.blender.controls.rotations import affine_about, remove_rounding, rotation_matrix
-from stiv.blender.scene.arrays import Floats
+from stiv.blender.scene.arrays import Floats, transform_points
 
 
 @dataclass(frozen=True)
@@ -18,11 +18,13 @@ class PlacementMotion:
         centre: (3,) at the start.
         pivot: (3,) point about which the group is rotated or scaled.
         axes: (3, 3) rotation, along whose columns the group is scaled; None for a rotation.
+        origin: (3,) of the first object, if each object turns or scales about its own origin; None if all move as one.
     """
 
     centre: Floats
     pivot: Floats
     axes: Floats | None = None
+    origin: Floats | None = None
 
     @property
     def rotation_rows(self) -> tuple[int, ...]:
@@ -36,6 +38,14 @@ class PlacementMotion:
         else:
             linear = (self.axes * self.factors(controls)) @ self.axes.T
         return affine_about(self.pivot, linear, self.pivot + remove_rounding(controls[0] - self.centre))
+
+    def matrix_of(self, controls: Floats, place: Floats) -> Floats:
+        """The motion, (4, 4), of an object of the group with this world matrix, (4, 4), at the start."""
+        whole, own = self.matrix(controls), place[:3, 3]
+        if self.origin is None or np.array_equal(own, self.origin):
+            return whole
+        shift = transform_points(whole, self.origin[None])[0] - self.origin
+        return affine_about(own, whole[:3, :3], own + remove_rounding(shift))
 
     def factors(self, controls: Floats) -> Floats:
         """The scale factors, (3,); 1 for a rotation. Those that differ only by rounding are equal."""

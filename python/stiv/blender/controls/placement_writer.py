@@ -25,8 +25,9 @@ class PlacementWriter:
 
     def write(self, controls: Floats) -> None:
         """Write centre and rotation vector, or centre and scale factors, (2, 3)."""
-        motion, factors = self.motion.matrix(controls), self.motion.factors(controls)
+        factors = self.motion.factors(controls)
         for ob, start in self._objects():
+            motion = self.motion.matrix_of(controls, start.world)
             if np.array_equal(motion, np.eye(4)):
                 start.restore(ob)
             else:

@@ -20,13 +20,15 @@ class RigidGroup:
     """`roots` are written; `members` (names, including the roots) move along.
 
     bent: names of the members whose modifiers refer to objects that stay. followers: names of meshes that do not belong
-    to the group, but whose shape or place depends on its members.
+    to the group, but whose shape or place depends on its members. tied: names of two objects, the second of which
+    depends on the first, so that all can only move as one.
     """
 
     roots: tuple[Participant, ...]
     members: frozenset[str]
     bent: frozenset[str] = frozenset()
     followers: frozenset[str] = frozenset()
+    tied: tuple[str, str] | None = None
 
     @property
     def surfaces(self) -> frozenset[str]:
@@ -155,7 +157,7 @@ def _merge_groups(groups: list[RigidGroup], dependency: Dependency) -> list[Rigi
     control_seams = [group for group in groups if dependency.user in group.members or dependency.used in group.members]
     if len(control_seams) < 2 or len({root.selected for group in control_seams for root in group.roots}) > 1:
         return groups
-    whole = join_groups(control_seams)
+    whole = replace(join_groups(control_seams), tied=(dependency.used, dependency.user))
     return [
         whole if group is control_seams[0] else group
         for group in groups
@@ -170,4 +172,5 @@ def join_groups(groups: Sequence[RigidGroup]) -> RigidGroup:
         frozenset().union(*(group.members for group in groups)),
         frozenset().union(*(group.bent for group in groups)),
         frozenset().union(*(group.followers for group in groups)),
+        next((group.tied for group in groups if group.tied), None),
     )

@@ -2,7 +2,6 @@
 """Location, rotation and scale as controls of rigid groups."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -26,14 +25,14 @@ from stiv.blender.settings import EditSettings
 def make_rigid_set(
     group: RigidGroup, surfaces: tuple[int, ...], meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str
 ) -> ControlSet:
-    """Control set of a rigid group, with the meshes of its surfaces."""
-    rest = np.concatenate([np.empty((0, 3)), *(each.world() for each in meshes)])
+    """Control set of a rigid group, with the meshes of its surfaces; about its origin without any."""
     starts = [read_transform(root.reference.find()) for root in group.roots]
+    rest = np.concatenate([each.world() for each in meshes]) if meshes else starts[0].world[None, :3, 3]
     selected = group.roots[0].selected
     scales = kind == "scale" and selected
     axes = _axes(group, starts) if scales else None
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
-    controls = stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
+    controls = _rest_controls(rest, axes)
     motion = PlacementMotion(controls[0], controls[0], axes)
     movers = [_movers(each, group) for each in meshes]
     placed = PlacedStack(meshes, movers, controls, motion) if any(movers) else None
@@ -42,11 +41,14 @@ def make_rigid_set(
     turns = scales or _may_turn(group, starts, kind if selected else "move", settings)
     turns = turns and free is None  # rotation about the centre would move the origin along locked axes
     can_align = kind == "move" and free is None and _can_turn(group, starts)
-    rule = PlacementGoal(selected, turns, starts[0].world[:3, 3], free, _up(starts[0]) if can_align else None)
+    solid = _with_surfaces(group, meshes)
+    first = starts[solid[0]] if solid else starts[0]
+    tied = group.tied or ((objects[solid[0]].name, objects[solid[1]].name) if len(solid) > 1 else None)
+    rule = PlacementGoal(selected, turns, first.world[:3, 3], free, _up(first) if can_align else None, tied)
+    about = _about_pivots(rest, meshes, movers)
     if axes is not None:
-        rule = ScaleGoal(**vars(rule), axes=axes)
+        rule = ScaleGoal(**vars(rule), axes=axes, about=about)
     elif selected and kind == "rotate":
-        about = _about_pivots(rest, meshes, movers, motion)
         rule = RotationGoal(**vars(rule), about=about, free_axis=_turns_on_contact(settings))
     weight = settings.response_weight(True) if selected else 1.0
     max_weights = np.array([1.0, float(turns)]) if free is None else np.array([free.free, np.zeros(3)], np.float64)
@@ -60,6 +62,11 @@ def make_rigid_set(
     )  # fmt: skip
 
 
+def _rest_controls(rest: Floats, axes: Floats | None) -> Floats:
+    """Centre, and rotation vector or scale factors, (2, 3), at the start. axes: of a scale; None for a rotation."""
+    return stiv.rigid_rest_controls(rest) if axes is None else stiv.scaling_rest_controls(rest)
+
+
 def _movers(mesh: VisibleMesh, group: RigidGroup) -> tuple[ObjectReference, ...]:
     """The objects of the group on whose place the shape of a mesh depends: itself, or the roots; () for rigid ones."""
     if mesh.owner.name in group.followers:
@@ -67,16 +74,23 @@ def _movers(mesh: VisibleMesh, group: RigidGroup) -> tuple[ObjectReference, ...]
     return (mesh.owner,) if mesh.owner.name in group.bent else ()
 
 
-def _about_pivots(
-    rest: Floats, meshes: Sequence[VisibleMesh], movers: Sequence[tuple[ObjectReference, ...]], motion: PlacementMotion
-) -> PivotDeformation:
-    """Rotations about pivots, of the surface `rest`, (n, 3), or of meshes as Blender evaluates them."""
+def _with_surfaces(group: RigidGroup, meshes: Sequence[VisibleMesh]) -> list[int]:
+    """Numbers of the roots of a group that have a surface, or whose children have one."""
+    owners = {mesh.owner.name for mesh in meshes} & group.members
+    families = [[root, *root.children_recursive] for root in (each.reference.find() for each in group.roots)]
+    return [number for number, family in enumerate(families) if not owners.isdisjoint(ob.name for ob in family)]
 
-    def make(pivot: Floats) -> tuple[stiv.Deformation, PlacedStack | None]:
-        if not any(movers):
-            return stiv.rigid(rest, pivot), None
-        stack = PlacedStack(meshes, movers, stiv.rigid_rest_controls(rest), replace(motion, pivot=pivot))
-        return stack.deformation, stack
+
+def _about_pivots(
+    rest: Floats, meshes: Sequence[VisibleMesh], movers: Sequence[tuple[ObjectReference, ...]]
+) -> PivotDeformation:
+    """Motions about pivots, of the surface `rest`, (n, 3), or of meshes as Blender evaluates them."""
+
+    def make(motion: PlacementMotion) -> tuple[stiv.Deformation, PlacedStack | None]:
+        if any(movers):
+            stack = PlacedStack(meshes, movers, _rest_controls(rest, motion.axes), motion)
+            return stack.deformation, stack
+        return stiv.rigid(rest, motion.pivot) if motion.axes is None else stiv.scaling(rest, motion.axes), None
 
     return PivotDeformation(make)
 

@@ -137,7 +137,7 @@ class BlenderEdit:
     def start_notes(self) -> tuple[str, ...]:
         """Notes about stale exclusions, intersections at the start, untested loose parts, seams, and shared meshes."""
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
-        notes = tuple(each.note for each in self.control_sets if each.note)
+        notes = tuple(note for each in self.control_sets for note in (each.note, each.passenger_note) if note)
         moving = {name for each in self.control_sets for name in each.names}
         intersecting = intersection_notes(self._solver.intersecting, moving)
         return (*dropped, *intersecting, *self._solver.loose_part_notes, *notes)
@@ -165,7 +165,7 @@ class BlenderEdit:
     @property
     def passenger_note(self) -> str:
         """The message on selected objects without a surface that cannot move along; "" without any."""
-        return next((each.note for each in self.control_sets if each.role == "rigid" and each.note), "")
+        return next((each.passenger_note for each in self.control_sets), "")
 
     @property
     def reset_note(self) -> str:

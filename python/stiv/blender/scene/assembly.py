@@ -49,7 +49,8 @@ class Assembly:
 
     def vertices_of(self, meshes: Sequence[int]) -> Indices:
         """Vertices of the surface that belong to meshes, without duplicates on seams."""
-        return np.concatenate([np.arange(self.starts[k], self.starts[k + 1], dtype=np.int32) for k in meshes])
+        rows = [np.arange(self.starts[k], self.starts[k + 1], dtype=np.int32) for k in meshes]
+        return np.concatenate([np.empty(0, np.int32), *rows])
 
     def merge_seams(self, mesh: int, points: Floats) -> Floats:
         """Points of a mesh, (n, 3), without duplicates on seams."""
