@@ -34,6 +34,12 @@ def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None
     return result_text(result.status, tuple(result.blocking), translate, stiv_blender.fit_message)
 
 
+def end_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit) -> str:
+    """The outcome at the end of an edit: why nothing has moved, or the status."""
+    note = edit.standstill_note(result)
+    return message_text(note) if note else outcome_text(result, edit)
+
+
 def message_text(message: object) -> str:
     """The text of an error or a note, in the language of the interface; names are shortened to fit the status bar."""
     return brief(errors.in_language(str(message), translate, stiv_blender.fit_message))

@@ -74,6 +74,10 @@ class FakeEdit:
     fold_note = torn_seam_note = reset_note = passenger_note = ""
     controls = ()
 
+    def standstill_note(self, result: Any) -> str:
+        """Everything moves."""
+        return ""
+
     @property
     def turned(self) -> float:
         """A session in a job cannot be asked."""

@@ -39,6 +39,7 @@ from ...units import length_text, readers
 from .. import last_edit, running, window_io
 from ..repair import decisions
 from ..reports import (
+    end_text,
     left_out_texts,
     message_text,
     outcome_text,
@@ -240,11 +241,11 @@ class DragOperator(Mixin):
         edit, result, report = drag.edit, drag.result, drag.writer.report
         if edit is not None and result is not None and report is not None:
             insert_keyframes(context, edit)
-            dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report)
+            stopped = drag.stopped or result.status == "budget"  # nothing solves on
+            outcome = translate("stopped") if stopped else end_text(result, edit)
+            dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report, outcome=outcome)
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
-            stopped = drag.stopped or result.status == "budget"  # nothing solves on
-            outcome = translate("stopped") if stopped else outcome_text(result, edit)
             report_outcome(self, outcome, write_failure(report), left_out_texts(context, edit, edit.passenger_note))
             edit.finish()
         store_proportional(context, drag.state.proportional)

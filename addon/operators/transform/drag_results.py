@@ -30,6 +30,7 @@ class DragResult:
         report: the report on writing it.
         shown: whether the scene is in this state now and only has to be registered.
         values: values of the operator's properties, as Blender stored them.
+        outcome: the message on the result.
 
     """
 
@@ -39,6 +40,7 @@ class DragResult:
     report: stiv_blender.WriteReport
     shown: bool = True
     values: tuple[object, ...] = ()
+    outcome: str = ""
 
 
 _results: OrderedDict[int, DragResult] = OrderedDict()

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from dataclasses import dataclass
 from typing import Any
 
 import bpy
 
 from ... import stiv_blender
-from ...intersection_texts import as_message, as_messages, brief
+from ...intersection_texts import as_message, brief
 from ...modal.drag_loop import restore_after_error
 from ...modal.request import Request
 from ...native_module import NeedsNativeModule
@@ -22,9 +23,9 @@ from ...translations import translate, translate_error
 from .. import last_edit, running
 from ..repair.passing import passing_text
 from ..reports import (
+    end_text,
     left_out_texts,
     message_text,
-    outcome_text,
     report_error,
     report_outcome,
     report_raised,
@@ -37,6 +38,27 @@ from .constraint import Constraint, free_directions
 from .options import TransformOptions
 
 MODES = {"OBJECT", "POSE", "EDIT_MESH", "EDIT_LATTICE", "EDIT_CURVE", "EDIT_SURFACE"}
+
+
+@dataclass(frozen=True)
+class EndedEdit:
+    """The end of an edit: its result, the report on writing it, the outcome, and what the edit left out."""
+
+    result: stiv_blender.EditResult
+    report: stiv_blender.WriteReport
+    outcome: str
+    left_out: list[str]
+
+    @classmethod
+    def of(
+        cls,
+        context: bpy.types.Context,
+        edit: stiv_blender.BlenderEdit,
+        result: stiv_blender.EditResult,
+        report: stiv_blender.WriteReport,
+    ) -> EndedEdit:
+        """Call it before the edit finishes, which ends its session."""
+        return cls(result, report, end_text(result, edit), left_out_texts(context, edit))
 
 
 class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
@@ -82,16 +104,16 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
             motion = self._motion(transform, frame)
             reused = _reused(edit, same, motion)
             steps = self._applied(context, edit, _solve_values(edit, motion, transform, frame))
-            result, report = reused or self._run(context, steps)
+            ended = reused or self._run(context, steps)
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
-        return self.finish_task(context, (result, report))
+        return self.finish_task(context, ended)
 
     def finish_task(self, context: bpy.types.Context, result: Any) -> set[str]:
-        """Report the result of the edit and of writing it."""
-        solved, report = result
-        context.window_manager.stiv_last_edit = last_edit.describe(solved, report)
-        report_outcome(self, outcome_text(solved), write_failure(report))
+        """Report the end of the edit."""
+        ended: EndedEdit = result
+        context.window_manager.stiv_last_edit = last_edit.describe(ended.result, ended.report)
+        report_outcome(self, ended.outcome, write_failure(ended.report), ended.left_out)
         return {"FINISHED"}
 
     def stop_task(self, context: bpy.types.Context) -> set[str]:
@@ -128,20 +150,19 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         context: bpy.types.Context,
         edit: stiv_blender.BlenderEdit,
         steps: stiv_blender.Steps[stiv_blender.EditResult],
-    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
+    ) -> stiv_blender.Steps[EndedEdit]:
         result = yield from steps
         return (yield from self._written(context, edit, result))
 
     def _written(
         self, context: bpy.types.Context, edit: stiv_blender.BlenderEdit, result: stiv_blender.EditResult
-    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
-        """Steps that write the accepted state, report what the edit left out, and end the edit."""
+    ) -> stiv_blender.Steps[EndedEdit]:
+        """Steps that write the accepted state, and end the edit."""
         report = yield from edit.write_steps()
         insert_keyframes(context, edit)
-        for text in as_messages(left_out_texts(context, edit)):
-            say(self, "WARNING", text)
+        ended = EndedEdit.of(context, edit, report.result or result, report)
         edit.finish()
-        return report.result or result, report
+        return ended
 
     def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
         """Make all calls of the steps at once; the redo panel does not wait without limit."""
@@ -152,9 +173,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
             say(self, "WARNING", translate("stopped after {} seconds, short of the goal").format(redo_limit.LIMIT))
         return result
 
-    def _steps(
-        self, context: bpy.types.Context
-    ) -> stiv_blender.Steps[tuple[stiv_blender.EditResult, stiv_blender.WriteReport]]:
+    def _steps(self, context: bpy.types.Context) -> stiv_blender.Steps[EndedEdit]:
         """The steps of `execute`."""
         request = self.request(context.scene)
         edit, result = yield from apply_values(self, context, request, self.requested(), self._motion)
@@ -170,14 +189,14 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
 
 def _reused(
     edit: stiv_blender.BlenderEdit, dragged: drag_results.DragResult | None, motion: stiv_blender.Motion
-) -> tuple[stiv_blender.EditResult, stiv_blender.WriteReport] | None:
-    """The result of a drag, written again; None if it began from another state or is not clear here."""
+) -> EndedEdit | None:
+    """The end of a drag, written again; None if it began from another state or is not clear here."""
     if dragged is None or dragged.start != edit.start_digest or not edit.resume_from(dragged.controls, motion):
         return None
     report = edit.write()
     if report.passed:
         insert_keyframes(bpy.context, edit)
-        return dragged.result, report
+        return EndedEdit(dragged.result, report, dragged.outcome, left_out_texts(bpy.context, edit))
     edit.restore()
     return None
 

@@ -103,6 +103,7 @@ MESSAGES = {
     'no vertex of "{}" can be a handle; change its weights': "“{}”中没有顶点可作控制柄；请更改其权重",
     "nothing movable is selected; select an object with a surface": "未选择可移动的内容；请选择有表面的物体",
     "nothing movable is selected; select vertices, points or objects with a surface": "未选择可移动的内容；请选择顶点、点或有表面的物体",
+    "nothing moved: already in contact with {}{}": "未移动：已与 {}{} 接触",
     "objects were shown, hidden or changed during the edit; begin again": "编辑期间有物体被显示、隐藏或更改；请重新开始",
     "only meshes and lattices yield to a pose; set its role to Obstacle": "只有网格和晶格会为姿态让位；请将角色设为障碍物",
     "only meshes can be reshaped; convert it to a mesh": "只有网格可以改变形状；请转换为网格",

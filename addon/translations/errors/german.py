@@ -103,6 +103,7 @@ MESSAGES = {
     'no vertex of "{}" can be a handle; change its weights': 'kein Vertex von "{}" kann Griff sein; die Gewichte ändern',
     "nothing movable is selected; select an object with a surface": "nichts Bewegliches ausgewählt; ein Objekt mit Oberfläche auswählen",
     "nothing movable is selected; select vertices, points or objects with a surface": "nichts Bewegliches ausgewählt; Vertices, Punkte oder Objekte mit Oberfläche auswählen",
+    "nothing moved: already in contact with {}{}": "nichts bewegt: schon in Kontakt mit {}{}",
     "objects were shown, hidden or changed during the edit; begin again": "Objekte wurden währenddessen ein-, ausgeblendet oder geändert; neu beginnen",
     "only meshes and lattices yield to a pose; set its role to Obstacle": "nur Meshes und Gitter weichen einer Pose aus; Rolle auf Hindernis stellen",
     "only meshes can be reshaped; convert it to a mesh": "nur Meshes lassen sich umformen; in ein Mesh umwandeln",

@@ -103,6 +103,7 @@ MESSAGES = {
     'no vertex of "{}" can be a handle; change its weights': "「{}」の頂点はハンドルにできません。ウェイトを変えてください",
     "nothing movable is selected; select an object with a surface": "動かせるものが選択されていません。サーフェスのあるオブジェクトを選択してください",
     "nothing movable is selected; select vertices, points or objects with a surface": "動かせるものが選択されていません。頂点、ポイント、サーフェスのあるオブジェクトを選択してください",
+    "nothing moved: already in contact with {}{}": "動いていません: すでに {}{} に接触しています",
     "objects were shown, hidden or changed during the edit; begin again": "編集中にオブジェクトが表示、非表示または変更されました。やり直してください",
     "only meshes and lattices yield to a pose; set its role to Obstacle": "ポーズに対して譲れるのはメッシュとラティスだけです。役割を障害物にしてください",
     "only meshes can be reshaped; convert it to a mesh": "形状を変えられるのはメッシュだけです。メッシュに変換してください",

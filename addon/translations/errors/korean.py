@@ -103,6 +103,7 @@ MESSAGES = {
     'no vertex of "{}" can be a handle; change its weights': '"{}"의 버텍스를 핸들로 쓸 수 없음; 웨이트를 바꾸세요',
     "nothing movable is selected; select an object with a surface": "움직일 수 있는 것이 선택되지 않음; 표면이 있는 오브젝트를 선택하세요",
     "nothing movable is selected; select vertices, points or objects with a surface": "움직일 수 있는 것이 선택되지 않음; 버텍스, 점 또는 표면이 있는 오브젝트를 선택하세요",
+    "nothing moved: already in contact with {}{}": "움직이지 않음: 이미 {}{}와(과) 접촉 중",
     "objects were shown, hidden or changed during the edit; begin again": "편집 중 오브젝트가 표시, 숨김 또는 변경됨; 다시 시작하세요",
     "only meshes and lattices yield to a pose; set its role to Obstacle": "메쉬와 래티스만 포즈에 물러납니다. 역할을 장애물로 설정하세요",
     "only meshes can be reshaped; convert it to a mesh": "메쉬만 형태를 바꿀 수 있음; 메쉬로 변환하세요",

@@ -22,7 +22,7 @@ from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
 from stiv_addon.operators import CLASSES  # noqa: E402
-from stiv_addon.operators.reports import outcome_text  # noqa: E402
+from stiv_addon.operators.reports import last_messages, outcome_text  # noqa: E402
 from stiv_addon.operators.transform import drag_results  # noqa: E402
 from stiv_addon.panels.base import draw_problem  # noqa: E402
 
@@ -56,6 +56,7 @@ class RecordingEdit:
     summary = SimpleNamespace(warnings=())
     start_notes = ()
     fold_note = torn_seam_note = reset_note = passenger_note = ""
+    standstill_note = staticmethod(lambda result: "")
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()
     failing: Exception | None = None
@@ -237,6 +238,20 @@ def test_the_result_of_a_drag_is_reused_from_the_same_start(scene: Any) -> None:
     drag_results.find(number).start = "another"
     bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # from another start
     np.testing.assert_array_equal(scene.location, (1.0, 19.0, 3.0))
+
+
+def test_the_redo_panel_repeats_the_messages_of_a_drag(scene: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(RecordingEdit, "reset_note", "Cube: the next frame resets it to its keyframes; key it")
+    result = SimpleNamespace(status="corrected", blocking=(), rounds=1, patches=0, energy=0.0, timings={}, counters={})
+    result.events = SimpleNamespace(kind=[])
+    dragged = drag_results.DragResult("start", np.eye(4), result, None, outcome="nothing moved")
+    number = drag_results.store(dragged)
+    bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # what the drag does at its end
+    last_messages.clear()
+    bpy.ops.stiv.move(value=(0.0, 9.0, 0.0), outcome=number)  # the redo panel
+    assert [message.partition(": ")[2] for message in last_messages] == [
+        "WARNING: nothing moved; Cube: the next frame resets it to its keyframes; key it"
+    ]
 
 
 @pytest.mark.parametrize(

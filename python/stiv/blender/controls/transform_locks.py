@@ -63,8 +63,17 @@ def _check(ob: bpy.types.Object, kind: str) -> None:
         locked.append(("scale", ob.lock_scale))
     for what, axes in locked:
         if any(axes):
-            names = ", ".join(axis for axis, lock in zip(AXES, axes, strict=True) if lock)
-            raise InputError(f"{ob.name}: its {what} is locked along {names}; unlock it")
+            raise InputError(_lock_text(ob, what, axes))
+
+
+def location_lock_text(ob: bpy.types.Object) -> str:
+    """The message on the locks of an object's location."""
+    return _lock_text(ob, "location", ob.lock_location)
+
+
+def _lock_text(ob: bpy.types.Object, what: str, axes: Sequence[bool]) -> str:
+    names = ", ".join(axis for axis, lock in zip(AXES, axes, strict=True) if lock)
+    return f"{ob.name}: its {what} is locked along {names}; unlock it"
 
 
 def find_free_directions(

@@ -24,6 +24,7 @@ from stiv.blender.edit.results import intersecting_objects, merge_results, round
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
 from stiv.blender.edit.solver import EditSolver
+from stiv.blender.edit.standstill import contact_text, lock_text
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
@@ -57,6 +58,7 @@ class BlenderEdit:
         self._limits: list[tuple[object, ...]] = [()] * len(self._made)
         self._start = stack_controls([each.controls for each in self._made])
         self._goal = self._start
+        self._motion: Motion | None = None
         self._taken: TakenState | None = None
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
@@ -166,6 +168,16 @@ class BlenderEdit:
     def passenger_note(self) -> str:
         """The message on selected objects without a surface that cannot move along; "" without any."""
         return next((each.passenger_note for each in self.control_sets), "")
+
+    def standstill_note(self, result: stiv.EditResult) -> str:
+        """Why nothing has moved, from the last result; "" if something has, nothing was to move, or it is not known."""
+        if self._unguarded is not None:
+            return ""
+        wanted = self._goal - self._start
+        if wanted.any():
+            return contact_text(result, self.assembly, self.moving, (self.controls - self._start, wanted))
+        asked = self._motion is not None and not np.array_equal(self._motion.matrix, np.eye(4))
+        return lock_text(self.control_sets) if asked else ""
 
     @property
     def reset_note(self) -> str:
@@ -324,7 +336,7 @@ class BlenderEdit:
         """Steps of `drag`; `time_budget` and `hand_over` are those of stiv.EditSession.drag."""
         chosen_motion = self._motion_of(motion)
         yield from self._limit(chosen_motion)
-        self._goal = self._goal_of(chosen_motion)
+        self._goal, self._motion = self._goal_of(chosen_motion), chosen_motion
         if self._unguarded is not None:
             self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
