@@ -27,6 +27,7 @@ MESSAGES = {
     "control {} is too large for single precision": "点 {} 超出单精度范围",
     'deforms it; select "{}" instead': "使其变形；请改为选择“{}”",
     "deforms the lattice; apply it": "使晶格变形；请应用它",
+    "depends on its transform; apply it": "取决于物体自身的变换；请应用",
     "excluded, because they may pass through each other: {}": "已排除，因为允许相互穿过：{}",
     "face {} has {} corners; triangulate the cage": "面 {} 有 {} 个角；请三角化笼",
     "flips quads; set Quad Method to Fixed": "会翻转对角线；请将四边面方法设为固定",

@@ -27,6 +27,7 @@ MESSAGES = {
     "control {} is too large for single precision": "Punkt {} ist zu groß für einfache Genauigkeit",
     'deforms it; select "{}" instead': 'verformt es; stattdessen "{}" auswählen',
     "deforms the lattice; apply it": "verformt das Gitter; anwenden",
+    "depends on its transform; apply it": "hängt von der Transformation des Objekts ab; anwenden",
     "excluded, because they may pass through each other: {}": "ausgenommen, weil sie einander durchdringen dürfen: {}",
     "face {} has {} corners; triangulate the cage": "Fläche {} hat {} Ecken; den Käfig triangulieren",
     "flips quads; set Quad Method to Fixed": "dreht Diagonalen; die Quad-Methode auf Fest stellen",

@@ -27,6 +27,7 @@ MESSAGES = {
     "control {} is too large for single precision": "点 {} は単精度には大きすぎます",
     'deforms it; select "{}" instead': "が変形しています。代わりに「{}」を選択してください",
     "deforms the lattice; apply it": "がラティスを変形しています。適用してください",
+    "depends on its transform; apply it": "オブジェクト自身のトランスフォームに依存しています。適用してください",
     "excluded, because they may pass through each other: {}": "通過が許可されているため除外: {}",
     "face {} has {} corners; triangulate the cage": "面 {} の角は {} 個です。ケージを三角形化してください",
     "flips quads; set Quad Method to Fixed": "が対角線を変えます。四角面の方式を固定にしてください",

@@ -27,6 +27,7 @@ MESSAGES = {
     "control {} is too large for single precision": "점 {}이(가) 단정밀도에 비해 너무 큼",
     'deforms it; select "{}" instead': '이(가) 변형함; 대신 "{}"을(를) 선택하세요',
     "deforms the lattice; apply it": "이(가) 래티스를 변형함; 적용하세요",
+    "depends on its transform; apply it": "오브젝트 자체의 변환에 따라 달라짐; 적용하세요",
     "excluded, because they may pass through each other: {}": "서로 통과할 수 있어 제외됨: {}",
     "face {} has {} corners; triangulate the cage": "면 {}의 모서리가 {}개임; 케이지를 삼각화하세요",
     "flips quads; set Quad Method to Fixed": "이(가) 대각선을 뒤집음; 쿼드 방법을 고정으로 설정하세요",

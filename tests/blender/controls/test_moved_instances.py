@@ -6,7 +6,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift, turn
 from mathutils import Vector
 from oracles import rational
 
@@ -258,3 +258,37 @@ def test_nodes_that_do_not_move_along_are_refused_by_name() -> None:
         BlenderEdit.begin(bpy.context, EditSettings(), "move")
     assert (evaluated(grid) == start).all()
     assert [scene.name for scene in bpy.data.scenes] == ["Scene"]
+
+
+def self_reading(what: str) -> Any:
+    """A sheet with Geometry Nodes that read the location or the scale of their own object."""
+    piece = sheet()
+    tree = bpy.data.node_groups.new("Own", "GeometryNodeTree")
+    for direction in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    own, info, place = (tree.nodes.new(f"GeometryNode{kind}") for kind in ("SelfObject", "ObjectInfo", "SetPosition"))
+    tree.links.new(own.outputs[0], info.inputs["Object"])
+    tree.links.new(start.outputs[0], place.inputs["Geometry"])
+    tree.links.new(info.outputs[what], place.inputs["Offset"])
+    tree.links.new(place.outputs[0], end.inputs[0])
+    add_modifier(piece, "NODES", "Own").node_group = tree
+    select(piece)
+    return piece
+
+
+@pytest.mark.parametrize(("kind", "reads"), [("scale", "Scale"), ("move", "Location")])
+def test_nodes_that_read_the_own_transform_are_refused_at_the_start(kind: str, reads: str) -> None:
+    self_reading(reads)
+    with pytest.raises(stiv.InputError) as refused:
+        BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    assert str(refused.value) == 'Piece: Geometry Nodes "Own" depends on its transform; apply it'
+    assert "STIV Evaluation" not in bpy.data.scenes
+
+
+@pytest.mark.parametrize(("kind", "reads"), [("move", "Scale"), ("rotate", "Scale"), ("rotate", "Location")])
+def test_nodes_that_read_another_property_do_not_hinder_an_edit(kind: str, reads: str) -> None:
+    self_reading(reads)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), kind)
+    motion = shift(z=1) if kind == "move" else turn(0.3, "Z", (0, 0, 2))
+    assert edit.apply(motion).status == "reached" and edit.write().passed

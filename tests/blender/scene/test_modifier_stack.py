@@ -282,6 +282,7 @@ def test_messages_fit_the_status_bar() -> None:
     of_reason |= {"before subdivision": [kinds["TRIANGULATE"]], "second subdivision": [kinds["SUBSURF"]]}
     of_reason |= {"projects": [kinds["SHRINKWRAP"]], "simulated": [kinds[kind] for kind in SIMULATIONS]}
     of_reason |= {"flips quads": [kinds["TRIANGULATE"]], "shows instances": [kinds["NODES"]]}
+    of_reason["own transform"] = [kinds["NODES"]]
     of_reason["no surface"] = [kinds[kind] for kind in ("MASK", "BUILD", "NODES", "REMESH", "MESH_TO_VOLUME")]
     of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
     messages = [

@@ -9,7 +9,7 @@ import bpy
 from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
-from stiv.blender.controls.rigid_trial import moves_as_a_whole
+from stiv.blender.controls.rigid_trial import check_own_transform, moves_as_a_whole
 from stiv.blender.scene.dependencies import Dependency, add_dependents, ancestors, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.followers import can_follow, used_names
@@ -50,6 +50,9 @@ def find_rigid_groups(participants: list[Participant], evaluations: Collection[s
     for group in list(groups):
         for dependency in _outside_dependencies(group, evaluations):
             groups = _merge_groups(groups, dependency)
+    for group in groups:
+        for name in sorted(group.members):
+            check_own_transform(bpy.data.objects[name], kind if group.roots[0].selected else "move")
     return [_with_bent(group, evaluations, kind) for group in groups]
 
 

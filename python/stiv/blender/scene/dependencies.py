@@ -50,7 +50,7 @@ def referenced_objects(owner: Any) -> Iterator[bpy.types.Object]:
     values = [getattr(owner, item.identifier) for item in owner.bl_rna.properties if item.type == "POINTER"]
     if isinstance(owner, bpy.types.NodesModifier):
         values += [value for _, _, value in node_inputs(owner)]
-        values += _in_nodes(owner.node_group, set())
+        values += _in_nodes(owner.node_group)
     if isinstance(owner, bpy.types.ArmatureConstraint):
         values += [target.target for target in owner.targets]
     for value in values:
@@ -69,16 +69,26 @@ def node_inputs(modifier: bpy.types.NodesModifier) -> list[tuple[Any, str, Any]]
     return [(socket, "value", getattr(socket, "value", None)) for socket in sockets]
 
 
-def _in_nodes(tree: bpy.types.NodeTree | None, seen: set[str]) -> list[Any]:
+def has_node(tree: bpy.types.NodeTree | None, kind: str) -> bool:
+    """Does a node tree or one of its groups have a node of this type?"""
+    return any(node.bl_idname == kind for each in _trees(tree) for node in each.nodes)
+
+
+def _trees(tree: bpy.types.NodeTree | None) -> list[bpy.types.NodeTree]:
+    """A node tree and its groups."""
+    found, waiting = [], [tree]
+    while waiting:
+        each = waiting.pop()
+        if each is not None and each not in found:
+            found.append(each)
+            waiting += [getattr(node, "node_tree", None) for node in each.nodes]
+    return found
+
+
+def _in_nodes(tree: bpy.types.NodeTree | None) -> list[Any]:
     """Objects and collections that a node tree and its groups refer to."""
-    if tree is None or tree.name in seen:
-        return []
-    seen.add(tree.name)
-    values = []
-    for node in tree.nodes:
-        values += [socket.default_value for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION")]
-        values += _in_nodes(getattr(node, "node_tree", None), seen)
-    return values
+    sockets = (socket for each in _trees(tree) for node in each.nodes for socket in node.inputs)
+    return [socket.default_value for socket in sockets if socket.type in ("OBJECT", "COLLECTION")]
 
 
 def shape_dependencies(ob: bpy.types.Object) -> Iterator[bpy.types.Object]:

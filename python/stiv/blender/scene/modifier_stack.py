@@ -28,6 +28,7 @@ MODIFIER_REASONS = {
     "ignores vertices": "hides edits; disable it",
     "no surface": "shows no surface; disable it",
     "of lattice": "deforms the lattice; apply it",
+    "own transform": "depends on its transform; apply it",
     "projects": 'projects onto "{other}"; edit that',
     "same lattice": 'uses "{other}" again; apply it',
     "second subdivision": "is the second; apply the first",
