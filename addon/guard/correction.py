@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import bpy
 
 from .. import stiv_blender
-from ..intersection_texts import short_name
-from ..modal.header_texts import listed, naming
+from ..modal.header_texts import naming
+from ..operators.reports import message_text
 from ..scene.edit_settings import edit_settings
-from ..translations import translate, translate_error
+from ..translations import translate
 
 TIME_LIMIT = 60.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
 
@@ -47,7 +47,7 @@ def test(context: bpy.types.Context) -> Outcome:
     try:
         return Outcome(stiv_blender.find_intersections(context, _settings(context)))
     except ValueError as error:
-        return Outcome(reason=translate_error(error), failed=True)
+        return Outcome(reason=message_text(error), failed=True)
 
 
 def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> stiv_blender.Steps[Outcome]:
@@ -56,8 +56,8 @@ def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedSce
     try:
         guarded = yield from stiv_blender.guard_result_steps(context, settings, accepted)
     except ValueError as error:
-        return Outcome(reason=translate_error(error), failed=True)
-    reason = translate_error(guarded.reason) if guarded.pairs else ""
+        return Outcome(reason=message_text(error), failed=True)
+    reason = message_text(guarded.reason) if guarded.pairs else ""
     if guarded.pairs and guarded.deformers:
         reason = _naming(translate("{} cannot be corrected"), guarded.deformers)
     return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
@@ -68,7 +68,7 @@ def stop(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Ou
     try:
         stiv_blender.revert(context, accepted.state)
     except ValueError as error:
-        return replace(test(context), reason=translate_error(error))
+        return replace(test(context), reason=message_text(error))
     added = any(ob.session_uid not in accepted.objects for ob in context.view_layer.objects)
     outcome = test(context) if added else Outcome(accepted.known.pairs)
     return replace(outcome, wrote=True, text=translate("stopped, back to the state before"))
@@ -77,9 +77,8 @@ def stop(context: bpy.types.Context, accepted: stiv_blender.AcceptedScene) -> Ou
 def _text(guarded: stiv_blender.GuardedResult) -> str:
     texts = []
     if guarded.blocking:
-        both = (guarded.corrected, guarded.blocking)
-        names, blocking = (listed([*map(short_name, each)], translate) for each in both)
-        texts.append(translate("corrected {}, blocked by {}").format(names, blocking))
+        text = translate("corrected {}, blocked by {}")
+        texts.append(_naming(text, guarded.corrected, guarded.blocking))
     elif guarded.corrected:
         texts.append(_naming(translate("corrected {}"), guarded.corrected))
     if guarded.cut:
@@ -89,8 +88,8 @@ def _text(guarded: stiv_blender.GuardedResult) -> str:
     return "; ".join(texts)
 
 
-def _naming(text: str, names: Sequence[str]) -> str:
-    return naming(text, names, translate, stiv_blender.fit_message)
+def _naming(text: str, *lists: Sequence[str]) -> str:
+    return naming(text, translate, stiv_blender.fit_message, *lists)
 
 
 def revert(context: bpy.types.Context, accepted: stiv_blender.SceneState, frame: int) -> tuple[str, ...]:

@@ -244,7 +244,7 @@ def _first_text(first: bool) -> str:
     if not first or found is None or not found.known:
         return ""
     text = translate("{} intersect and are left alone; all else is guarded")
-    return naming(text, found.names, translate, stiv_blender.fit_message)
+    return naming(text, translate, stiv_blender.fit_message, found.names)
 
 
 def _store_in_history(window: bpy.types.Window, action: Action, seen: Observation) -> None:

@@ -103,7 +103,7 @@ def result_text(
     fill: puts the names into a template.
     """
     if status == "blocked" and blocking:
-        return naming(translate("blocked by {}"), blocking, translate, fill)
+        return naming(translate("blocked by {}"), translate, fill, blocking)
     text = _STATUS_TEXTS.get(status, status)
     return translate(text) if text else ""
 
@@ -123,10 +123,14 @@ def listed(names: Sequence[str], translate: Translate = str, most: int = MAX_NAM
     return translate("{} and {} more").format(first, others) if others > 0 else first
 
 
-def naming(text: str, names: Sequence[str], translate: Translate, fill: Callable[..., str]) -> str:
-    """A text with the first names at its {}, and the number of the others."""
-    places = listed(["{}"] * len(names), translate)
-    return fill(text.format(places), *names[:MAX_NAMES])
+def naming(text: str, translate: Translate, fill: Callable[..., str], *lists: Sequence[str]) -> str:
+    """A text with the first names of a list at each of its {}, and the number of the others.
+
+    fill: puts the names into a template.
+    """
+    most = MAX_NAMES if len(lists) == 1 or max(map(len, lists)) <= MAX_NAMES else 1
+    places = [listed(["{}"] * len(names), translate, most) for names in lists]
+    return fill(text.format(*places), *(name for names in lists for name in names[:most]))
 
 
 def fixed_text(value: float, digits: int = DIGITS) -> str:

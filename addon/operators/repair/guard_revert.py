@@ -50,6 +50,6 @@ class STIV_OT_guard_revert(NeedsNativeModule, bpy.types.Operator):
             headline = remaining.headline(translate)
             self.report({"WARNING"}, translate("{}; use Undo for other changes").format(headline))
             return {"FINISHED"} if names else {"CANCELLED"}
-        restored = naming(translate("Restored {}"), names, translate, stiv_blender.fit_message)
+        restored = naming(translate("Restored {}"), translate, stiv_blender.fit_message, names)
         self.report({"INFO"}, restored if names else translate("Restored frame {}").format(frame))
         return {"FINISHED"}

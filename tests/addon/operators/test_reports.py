@@ -55,7 +55,8 @@ def test_messages_that_name_several_objects_fit() -> None:
     fit = reports.stiv_blender.fit_message
     for count in (1, 2, 3, 40):
         assert len(result_text("blocked", long_names(count), str, fit)) <= LENGTH
-        assert len(naming("put {} at the nearest free place", long_names(count), str, fit)) <= LENGTH
+        assert len(naming("put {} at the nearest free place", str, fit, long_names(count))) <= LENGTH
+        assert len(naming("corrected {}, blocked by {}", str, fit, long_names(count), long_names(count))) <= LENGTH
     assert len(exclusions.intersection_text(first, second, 123456, ", may only part")) <= LENGTH
     assert len(exclusions.loose_geometry_text(first, second)) <= LENGTH
     assert result_text("blocked", ["Wall", "Floor"], str, fit) == "blocked by Wall, Floor"
