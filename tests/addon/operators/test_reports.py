@@ -70,14 +70,14 @@ def reported(monkeypatch: pytest.MonkeyPatch) -> tuple[Any, list[tuple[str, str]
     return operator, messages
 
 
-def test_what_does_not_fit_one_message_is_reported_in_several(reported: Any) -> None:
+def test_texts_that_do_not_fit_one_message_are_reported_in_several(reported: Any) -> None:
     operator, messages = reported
     reports.report_outcome(operator, "deflected", "", ["x" * 60, "y" * 30])
     assert messages == [("WARNING", "deflected; " + "x" * 60), ("WARNING", "y" * 30)]
     assert as_messages([]) == []
 
 
-def test_an_outcome_without_exceptions_is_no_warning(reported: Any) -> None:
+def test_an_outcome_without_exceptions_is_information(reported: Any) -> None:
     operator, messages = reported
     reports.report_outcome(operator, "deflected", "")
     reports.report_outcome(operator, "", "")

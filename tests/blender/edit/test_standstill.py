@@ -30,7 +30,7 @@ def drag(matrix: np.ndarray, **settings: Any) -> str:
 
 
 @pytest.mark.parametrize("response", ["slide", "slide_and_turn"])
-def test_what_lies_on_the_floor_names_it(response: str) -> None:
+def test_a_cube_on_the_floor_names_it(response: str) -> None:
     cube = landed()
     place = tuple(cube.location)
     note = drag(shift(z=-1), object_response=response)
@@ -38,7 +38,7 @@ def test_what_lies_on_the_floor_names_it(response: str) -> None:
     assert tuple(cube.location) == pytest.approx(place, abs=1e-6)
 
 
-def test_what_slides_along_the_floor_has_moved() -> None:
+def test_a_cube_that_slides_along_the_floor_has_moved() -> None:
     landed()
     assert drag(shift(x=0.5, z=-1)) == ""
     assert drag(shift(z=1)) == ""
