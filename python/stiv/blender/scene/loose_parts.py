@@ -11,6 +11,7 @@ import stiv
 from stiv.blender.scene.arrays import Flags, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element
+from stiv.blender.scene.message_fitting import fit_message
 
 
 @dataclass(frozen=True)
@@ -86,5 +87,5 @@ def loose_part_notes(assembly: Assembly, parts: LooseParts) -> tuple[str, ...]:
 
 def _note(name: str, count: int) -> str:
     if count == 1:
-        return f"{name}: 1 loose edge or vertex cuts it and is not tested"
-    return f"{name}: {count:,} loose edges or vertices cut it and are not tested"
+        return fit_message("{}: 1 loose edge or vertex cuts it and is not tested", name)
+    return fit_message("{}" + f": {count:,} loose edges or vertices cut it and are not tested", name)
