@@ -141,3 +141,64 @@ def test_an_intersection_passes_an_edge_only_if_it_touches_it(distance: float) -
     left = set(map(tuple, stiv.find_intersections(result.surface, triangles).tolist()))
     assert (result.status == "reached") == touches
     assert left == ({(0, 2), (0, 3), (1, 2)} if touches else at_start)
+
+
+def layers_in_a_tilted_plane(seed: int, gap: float = 0.0) -> tuple[stiv.Surface, np.ndarray, np.ndarray]:
+    """One body: a sheet, a patch on it, and two balls beside it that cut each other; flags of the patch's vertices.
+
+    The plane is tilted, so that rounding puts the points of the patch on either side of the sheet.
+    """
+    turn = np.random.default_rng(seed).normal(size=3)
+    shapes = [
+        triangulated(grid(9, 9, 4, 4)),
+        triangulated(grid(4, 4, 1.1, 1.3)).moved((0.13, 0.21, gap)),
+        icosphere(1).scaled(0.4).moved((4.0, 0, 0)),
+        icosphere(1).scaled(0.4).moved((4.3, 0.1, 0.2)),
+    ]
+    whole = joined([shape.turned(turn) for shape in shapes])
+    part = np.repeat(np.arange(4), [len(shape.vertices) for shape in shapes])
+    surface = stiv.Surface(whole.triangles(), len(whole.vertices))
+    return surface, whole.vertices.astype(np.float32).astype(float), part == 1
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_faces_that_touch_do_not_keep_their_mesh_from_moving(seed: int) -> None:
+    """Each motion rounds anew, and with it the faces that touch intersect or part."""
+    surface, start, _ = layers_in_a_tilted_plane(seed)
+    session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
+    excluded = set(map(tuple, session.excluded.tolist()))
+    chance = np.random.default_rng(seed)
+    changed = False
+    for _ in range(10):
+        goal = (start + chance.normal(size=3)).astype(np.float32).astype(float)
+        assert session.edit(goal).status == "reached"
+        after = pairs_of(surface, session.surface)
+        assert after <= excluded
+        changed |= after != pairs_of(surface, start)
+    assert changed
+
+
+def parting_motion(one: np.ndarray, other: np.ndarray) -> float:
+    """The shortest motion that parts two triangles, (3, 3) each, by separating axes."""
+    sides = [np.roll(each, -1, axis=0) - each for each in (one, other)]
+    normals = [np.cross(each[0], each[1]) for each in sides]
+    axes = [*normals, *(np.cross(a, b) for a in sides[0] for b in sides[1])]
+    axes += [np.cross(n, side) for n, each in zip(normals, sides, strict=True) for side in each]
+    directions = [axis / np.linalg.norm(axis) for axis in axes if np.linalg.norm(axis) > 1e-12]
+    return min(min((one @ d).max() - (other @ d).min(), (other @ d).max() - (one @ d).min()) for d in directions)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_faces_that_touch_are_not_pressed_through_each_other(seed: int) -> None:
+    surface, start, patch = layers_in_a_tilted_plane(seed, gap=3e-7)
+    normal = np.linalg.svd(start[:81] - start[:81].mean(axis=0))[2][2]
+    normal *= np.sign((start[patch] - start[0]).mean(axis=0) @ normal)
+    session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
+    goal = start - np.where(patch[:, None], 0.3 * normal, 0.0)
+    for _ in range(3):
+        session.edit(goal)
+        q = session.surface
+        new = pairs_of(surface, q) - pairs_of(surface, start)
+        assert all(parting_motion(*q[surface.triangles[list(pair)]]) < 1e-5 for pair in new)
+        upper, lower = q[patch].mean(axis=0), q[:81][np.linalg.norm(q[:81] - q[patch].mean(axis=0), axis=1) < 0.6]
+        assert (upper - lower.mean(axis=0)) @ normal > -0.02  # bent, but not below

@@ -223,18 +223,20 @@ bool CollisionQueries::passes_static_test(const Positions& from, const Positions
   const IndexPairs all = found.faces;
   found.faces = excluded_.others(found.faces, end);
   if (!found.empty()) return false;
-  const IndexPairs& before = intersecting_at(from, execution);
-  if (excluded_.are_more(all, before, start_.with_rest(from)) || depth_->is_deeper(end, all)) return false;
-  intersecting_ = {to, all};
+  const IntersectionCount intersecting = excluded_.count(all, end);
+  if (excluded_.are_more(intersecting, intersecting_at(from, execution)) || depth_->is_deeper(end, all)) return false;
+  intersecting_ = {to, intersecting};
   return true;
 }
 
-/// The pairs of triangles, excluded ones, that intersect at an accepted surface.
-const IndexPairs& CollisionQueries::intersecting_at(const Positions& accepted, Execution& execution) {
+/// Of excluded pairs, at an accepted surface.
+const IntersectionCount& CollisionQueries::intersecting_at(const Positions& accepted, Execution& execution) {
   const Positions& known = intersecting_.surface;
-  if (known.rows() != accepted.rows() || known != accepted)
-    intersecting_ = {accepted, guard_->intersections.find(start_.with_rest(accepted), execution)};
-  return intersecting_.pairs;
+  if (known.rows() != accepted.rows() || known != accepted) {
+    const Positions& q = start_.with_rest(accepted);
+    intersecting_ = {accepted, excluded_.count(guard_->intersections.find(q, execution), q)};
+  }
+  return intersecting_.count;
 }
 
 bool CollisionQueries::is_step_free(const PositionsView& from, const PositionsView& to, Execution& execution) {

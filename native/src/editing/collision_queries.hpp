@@ -56,8 +56,8 @@ class CollisionQueries {
   std::optional<double> earliest_time(const Positions& from, const Positions& to, PairLimit limit,
                                       Execution& execution);
   /// The exact static test of a surface, given that `from` passes it: 1 if it passes, otherwise a smaller fraction of
-  /// the step to try next, or 0. Excluded pairs may intersect, but not more of them than in `from`, apart from those
-  /// that touched there, and no deeper than at the start. (mathematics.md, "Excluded pairs", "Overlapping bodies")
+  /// the step to try next, or 0. Excluded pairs may intersect, but not more of them than in `from`, as
+  /// ExcludedPairs::are_more, and no deeper than at the start. (mathematics.md, "Excluded pairs", "Overlapping bodies")
   double free_fraction(const Positions& from, const Positions& to, Execution& execution);
   /// Is a step free of intersections, whatever its clearance, given that its start is? For sessions without excluded
   /// pairs.
@@ -80,16 +80,16 @@ class CollisionQueries {
     IntersectionTest intersections;
   };
 
-  struct IntersectingPairs {
+  struct Intersecting {
     Positions surface;
-    IndexPairs pairs;
+    IntersectionCount count;
   };
 
   void prepare_searches(const Positions& surface, Execution& execution);
   void guard_pairs_apart_at(const Positions& accepted, Execution& execution);
   bool is_end_free(const PositionsView& from, const PositionsView& to, Execution& execution);
   bool passes_static_test(const Positions& from, const Positions& to, Execution& execution);
-  const IndexPairs& intersecting_at(const Positions& accepted, Execution& execution);
+  const IntersectionCount& intersecting_at(const Positions& accepted, Execution& execution);
   std::optional<Events> find_not_excluded(Detector& detector, const Positions& from, const Positions& to,
                                           const Proximity& proximity, PairLimit limit, Execution& execution) const;
 
@@ -107,7 +107,7 @@ class CollisionQueries {
   std::vector<unsigned char> overlapping_;
   Positions guarded_at_;  ///< the accepted surface at which `overlapping_` holds
   BodySeparations no_separations_;
-  IntersectingPairs intersecting_;  ///< of the surface that passed the static test last, if pairs are excluded
+  Intersecting intersecting_;  ///< excluded pairs, of the surface that passed the static test last
 };
 
 }  // namespace stiv

@@ -57,6 +57,9 @@ struct PlacedTriangles {
     return least_triangle_distance(first, second, q) < nearest &&
            triangle_distance(first, second, q).distance < nearest && !triangles_intersect(first, second, q);
   }
+
+  bool intersect(Index a, Index b) const { return triangles_intersect(corners(a), corners(b), q); }
+  double depth(Index a, Index b) const { return intersection_depth(corners(a), corners(b), q); }
 };
 
 }  // namespace
@@ -76,6 +79,9 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
+  const PlacedTriangles placed{triangles, start_};
+  for (const auto& [a, b] : pairs_)
+    if (placed.intersect(a, b)) (placed.depth(a, b) < rounding() ? shallow_ : deep_).emplace_back(a, b);
   bodies_ = bodies_of_pairs();
   add_touching();
   find_others_that_touch(execution);
@@ -180,19 +186,22 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q
   return left;
 }
 
-bool ExcludedPairs::are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const {
-  const PlacedTriangles placed{surface_->triangles(), from};
-  const auto count_only_in = [&](const IndexPairs& these, const IndexPairs& those, const auto& counts) {
-    IndexPairs only;
-    std::set_difference(these.begin(), these.end(), those.begin(), those.end(), std::back_inserter(only));
-    return std::count_if(only.begin(), only.end(), [&](const auto& pair) {
-      return !is_among(touching_, pair.first, pair.second) && counts(pair);
-    });
-  };
-  const auto ended = count_only_in(before, now, [](const auto&) { return true; });
-  const auto begun =
-      count_only_in(now, before, [&](const auto& pair) { return !placed.touch(pair.first, pair.second, rounding()); });
-  return begun > ended;
+IntersectionCount ExcludedPairs::count(const IndexPairs& pairs, const PositionsView& q) const {
+  const PlacedTriangles placed{surface_->triangles(), q};
+  IntersectionCount found;
+  for (const auto& [a, b] : pairs) {
+    if (is_among(touching_, a, b)) continue;
+    if (is_among(shallow_, a, b))
+      ++found.shallow;
+    else if (is_among(deep_, a, b) || placed.depth(a, b) >= rounding())
+      ++found.deep;
+  }
+  return found;
+}
+
+bool ExcludedPairs::are_more(const IntersectionCount& now, const IntersectionCount& before) const {
+  const std::size_t parted = shallow_.size() - now.shallow;
+  return now.deep > before.deep + parted || now.deep > deep_.size() + parted;
 }
 
 }  // namespace stiv

@@ -11,6 +11,13 @@
 
 namespace stiv {
 
+/// Number of excluded pairs that intersect. Those that rounding makes intersect do not count: pairs that touched at the
+/// start, and others, which did not intersect there, while they are no deeper than rounding.
+struct IntersectionCount {
+  std::size_t deep = 0;
+  std::size_t shallow = 0;  ///< at the start no deeper than rounding, which decides whether they still intersect
+};
+
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
 /// bodies that touch, which may intersect no deeper than rounding. An event belongs to every pair of a triangle at its
 /// first side and one at its second. It is ignored only if each of these pairs is excluded, so that all other pairs
@@ -37,11 +44,11 @@ class ExcludedPairs {
   /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q.
   IndexPairs others(const IndexPairs& pairs, const PositionsView& q) const;
 
-  /// Whether more pairs intersect than before. Those that touched before are not counted: rounding decides whether they
-  /// intersect.
-  /// @param before the pairs that intersected at `from`, sorted like `now`
-  /// @param from of all vertices
-  bool are_more(const IndexPairs& now, const IndexPairs& before, const PositionsView& from) const;
+  /// Counts pairs that intersect at q, sorted.
+  IntersectionCount count(const IndexPairs& pairs, const PositionsView& q) const;
+
+  /// Do more pairs intersect than before, or than at the start? A pair may begin if a shallow one has ended.
+  bool are_more(const IntersectionCount& now, const IntersectionCount& before) const;
 
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
@@ -59,6 +66,7 @@ class ExcludedPairs {
   double least_;
   IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
   IndexPairs pairs_;                        // without limits
+  IndexPairs deep_, shallow_;               // those that intersect at the start, shallow: no deeper than rounding
   IndexPairs touching_;                     // other pairs
   IndexPairs all_;                          // both
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
