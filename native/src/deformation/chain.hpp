@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <set>
 #include <utility>
@@ -41,6 +42,17 @@ class Chained : public Base {
 
   Positions push_forward(const Controls& p, const Controls& d) const override {
     return outer_->push_forward({}, inner_->push_forward(p, d));
+  }
+
+  bool has_cheaper_columns() const override { return inner_->has_cheaper_columns(); }
+
+  void visit_columns(const Controls& p, const Execution& execution,
+                     const std::function<void(Index, const Deformation::ControlColumns&)>& visit) const override {
+    inner_->visit_columns(p, execution, [&](Index control, const Deformation::ControlColumns& columns) {
+      Deformation::ControlColumns moved;
+      for (std::size_t axis = 0; axis < moved.size(); ++axis) moved[axis] = outer_->push_forward({}, columns[axis]);
+      visit(control, moved);
+    });
   }
 
   std::vector<Index> support(Index control) const override {

@@ -251,6 +251,18 @@ class Concatenation final : public Deformation {
     return velocity;
   }
 
+  Influence influence(const Controls& p, const Eigen::VectorXd& distances, const Execution& execution) const override {
+    check_control_rows(p, control_count());
+    Influence whole;
+    for (std::size_t component = 0; component < components_.size(); ++component) {
+      const Influence added = components_[component].deformation->influence(
+          rows_of_component(p, control_starts_, component), distances(components_[component].vertices), execution);
+      append(whole.largest, added.largest);
+      append(whole.miss, added.miss);
+    }
+    return whole;
+  }
+
   std::unique_ptr<Metric> metric(const MetricOptions& options) const override {
     checked_weights(options, control_count());
     std::vector<std::unique_ptr<Metric>> blocks;

@@ -15,41 +15,11 @@ namespace {
 
 constexpr double deviation_factor = 2;  // of the distance that vertices miss their goals by
 constexpr double least_influence = 0.25;
-constexpr Index vertices_per_chunk = 1024;
 
 Vector3 weights_of(const EditOptions& options, Index control, Index controls) {
   if (options.weights.size() == 0) return Vector3::Ones();
   if (options.weights.size() == controls) return Vector3::Constant(options.weights[control]);
   return options.weights.segment<3>(3 * control);
-}
-
-/// Effects of each control on the surface, (m) each.
-struct Influence {
-  Eigen::VectorXd largest;  ///< the largest motion of a vertex for a unit of the control
-  Eigen::VectorXd miss;     ///< the distance by which one of its vertices misses its goal at most
-};
-
-Influence influence(const Deformation& deformation, const Controls& p, const Eigen::VectorXd& missing,
-                    const Execution& execution) {
-  Influence found{Eigen::VectorXd::Zero(p.rows()), Eigen::VectorXd::Zero(p.rows())};
-  const auto count = static_cast<Index>(missing.size());
-  for (Index begin = 0; begin < count; begin += vertices_per_chunk) {
-    const Index end = std::min(count, begin + vertices_per_chunk);
-    std::vector<SparseField> units;
-    for (Index vertex = begin; vertex < end; ++vertex) units.push_back({{vertex}, {Vector3::UnitX()}});
-    const std::vector<SparseField> rows = deformation.pull_back_all(p, units, execution);
-    for (Index vertex = begin; vertex < end; ++vertex) {
-      const SparseField& row = rows[at(vertex - begin)];
-      for (std::size_t k = 0; k < row.index.size(); ++k) {
-        const double weight = row.value[k].norm();
-        if (!(weight > 0)) continue;
-        const Index control = row.index[k];
-        found.largest[control] = std::max(found.largest[control], weight);
-        found.miss[control] = std::max(found.miss[control], missing[vertex]);
-      }
-    }
-  }
-  return found;
 }
 
 /// The distance by which a control's vertices miss their goals at most.
@@ -75,7 +45,7 @@ ControlBox::ControlBox(const EditContext& context, const State& accepted, const 
       first_name_(2 * static_cast<Index>(context.limits().rows().size())) {
   const Deformation& deformation = context.deformation();
   const Eigen::VectorXd missing = (goal.surface - accepted.surface).rowwise().norm();
-  const Influence controls = influence(deformation, accepted.controls, missing, execution);
+  const Influence controls = deformation.influence(accepted.controls, missing, execution);
   const auto count = static_cast<Index>(reach_.rows());
   for (Index k = 0; k < count; ++k) {
     const double distance = deviation_factor * controls.miss[k] / std::max(controls.largest[k], least_influence);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,6 +24,12 @@ struct ScalarLimits {
 struct ScalarRows {
   std::vector<Index> rows;
   ScalarLimits limits;
+};
+
+/// Effects of each control on the surface, (m) each.
+struct Influence {
+  Eigen::VectorXd largest;  ///< the largest motion of a vertex along x for a unit motion of the control
+  Eigen::VectorXd miss;     ///< the largest distance of a vertex that the control moves
 };
 
 /// A map q = f(p) from controls to surface positions, and the products with its Jacobian J. [P5.1, App. B]
@@ -65,6 +73,22 @@ class Deformation {
 
   /// J(p) d, (n, 3): the velocity of the surface for a motion d, (m, 3), of the controls.
   virtual Positions push_forward(const Controls& p, const Controls& d) const = 0;
+
+  /// The velocities, (n, 3), of the surface for unit motions of a control along x, y and z.
+  using ControlColumns = std::array<Positions, 3>;
+
+  /// Calls visit(control, columns) with the columns of J(p) of each control, once for each, from several threads.
+  /// @throws Interrupted
+  virtual void visit_columns(const Controls& p, const Execution& execution,
+                             const std::function<void(Index, const ControlColumns&)>& visit) const;
+
+  /// Whether all columns of J cost less than all of its rows: where each product is a solve, and controls are few.
+  virtual bool has_cheaper_columns() const { return false; }
+
+  /// The influence of the controls at p on vertices with the given distances, (n). Results do not depend on the number
+  /// of threads.
+  /// @throws Interrupted
+  virtual Influence influence(const Controls& p, const Eigen::VectorXd& distances, const Execution& execution) const;
 
   /// The factored metric of the controls, computed once per session. @see Metric
   virtual std::unique_ptr<Metric> metric(const MetricOptions& options) const = 0;

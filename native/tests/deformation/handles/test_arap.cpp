@@ -141,3 +141,60 @@ TEST_CASE("arap: a linear deformation after it") {
   }
   check_linearisation(*make_composition(make_linear(weights), make_arap(definition)), moved_handles(definition, 0.4));
 }
+
+namespace {
+
+/// The influence of each control by a row of J for each vertex.
+Influence influence_by_rows(const Deformation& deformation, const Controls& p, const Eigen::VectorXd& distances) {
+  Influence found{Eigen::VectorXd::Zero(p.rows()), Eigen::VectorXd::Zero(p.rows())};
+  for (Index vertex = 0; vertex < deformation.vertex_count(); ++vertex) {
+    const SparseField row = deformation.pull_back(p, {{vertex}, {Vector3::UnitX()}});
+    for (std::size_t k = 0; k < row.index.size(); ++k) {
+      const double motion = row.value[k].norm();
+      if (!(motion > 0)) continue;
+      found.largest[row.index[k]] = std::max(found.largest[row.index[k]], motion);
+      found.miss[row.index[k]] = std::max(found.miss[row.index[k]], distances[vertex]);
+    }
+  }
+  return found;
+}
+
+void check_influence(const Deformation& deformation, const Controls& p) {
+  const Eigen::VectorXd distances = random_positions(deformation.vertex_count(), 31).col(0).cwiseAbs();
+  const Influence expected = influence_by_rows(deformation, p, distances);
+  const Influence one = deformation.influence(p, distances, Execution(1));
+  const Influence two = deformation.influence(p, distances, Execution(2));
+  CHECK((one.largest - expected.largest).norm() < 1e-7 * expected.largest.norm());
+  CHECK(one.miss == expected.miss);
+  CHECK(one.largest == two.largest);
+  CHECK(one.miss == two.miss);
+}
+
+}  // namespace
+
+TEST_CASE("arap: the influence of controls is that of a row for each vertex, with few controls and with many") {
+  for (const Index side : {Index{6}, Index{12}})
+    for (const bool hard : {false, true}) {
+      const HandleDefinition definition = sheet_with_handles(side, hard, EdgeWeights::cotangent);
+      const auto arap = make_arap(definition);
+      for (const double amount : {0.0, 0.1, 0.7}) check_influence(*arap, moved_handles(definition, amount));
+    }
+}
+
+TEST_CASE("arap: the influence of controls beside another component, and after a linear deformation") {
+  const HandleDefinition definition = sheet_with_handles(12, true, EdgeWeights::cotangent);
+  const auto arap = make_arap(definition);
+  const Index n = arap->vertex_count(), m = arap->control_count();
+  WeightMatrix halves(n - 1, n);
+  for (Index row = 0; row + 1 < n; ++row) {
+    halves.insert(row, row) = 0.5;
+    halves.insert(row, row + 1) = 0.5;
+  }
+  check_influence(*make_composition(make_linear(halves), arap), moved_handles(definition, 0.3));
+  std::vector<Index> last_first;
+  for (Index vertex = 0; vertex < n; ++vertex) last_first.push_back(n + 1 - vertex);
+  const auto whole = make_concatenation({{make_identity(2), {0, 1}}, {arap, last_first}}, random_positions(n + 2, 3));
+  Controls p(m + 2, 3);
+  p << random_positions(2, 4), moved_handles(definition, 0.3);
+  check_influence(*whole, p);
+}
