@@ -77,21 +77,22 @@ class Arap final : public HandleDeformation {
   Index control_count() const override { return map_.control_count(); }
   Index vertex_count() const override { return map_.vertex_count(); }
 
-  Positions surface(const Controls& p, const Execution&) const override {
+  Positions surface(const Controls& p, const Execution& execution) const override {
     check_control_rows(p, control_count());
-    return positions(minimum(p, true)->descent.shape, p);
+    return positions(minimum(p, true, execution)->descent.shape, p);
   }
 
   bool has_exact_rows() const override { return false; }
 
-  Positions surface_rows(const Controls& p, std::span<const Index> vertices, const Execution&) const override {
+  Positions surface_rows(const Controls& p, std::span<const Index> vertices,
+                         const Execution& execution) const override {
     check_control_rows(p, control_count());
-    return rows_of(positions(minimum(p, false)->rough, p), vertices);
+    return rows_of(positions(minimum(p, false, execution)->rough, p), vertices);
   }
 
   /// J'g = M'(g + C H^-1 g), the transpose of J below.
   SparseField pull_back(const ControlsView& p, const SparseField& g) const override {
-    const auto state = minimum(p, false);
+    const auto state = minimum(p, false, Execution(1));
     Positions covector = Positions::Zero(vertex_count(), 3);
     for (std::size_t k = 0; k < g.index.size(); ++k) covector.row(g.index[k]) = g.value[k];
     return pulled_through(state->rough, solve_hessian(state->rough, covector), g);
@@ -101,7 +102,7 @@ class Arap final : public HandleDeformation {
   /// each pass solves for sixteen columns.
   std::vector<SparseField> pull_back_all(const ControlsView& p, const std::vector<SparseField>& g,
                                          const Execution& execution) const override {
-    const auto state = minimum(p, false);
+    const auto state = minimum(p, false, execution);
     const auto factor = factor_hessian(state->rough);
     if (!factor) return Deformation::pull_back_all(p, g, execution);  // at a saddle
     std::vector<SparseField> pulled(g.size());
@@ -119,7 +120,7 @@ class Arap final : public HandleDeformation {
   /// J d = M d + H^-1 C M d: the global step with frozen rotations, and the response of the rotations.
   Positions push_forward(const Controls& p, const Controls& d) const override {
     check_control_rows(d, control_count());
-    const auto state = minimum(p, false);
+    const auto state = minimum(p, false, Execution(1));
     const Positions frozen = map_.follow(d);
     return frozen + solve_hessian(state->rough, cells_.load_change(state->rough.fits, frozen));
   }
@@ -130,7 +131,7 @@ class Arap final : public HandleDeformation {
   void visit_columns(const Controls& p, const Execution& execution,
                      const std::function<void(Index, const ControlColumns&)>& visit) const override {
     check_control_rows(p, control_count());
-    const auto state = minimum(p, false);
+    const auto state = minimum(p, false, execution);
     const auto factor = factor_hessian(state->rough);
     if (!factor) return Deformation::visit_columns(p, execution, visit);  // at a saddle
     constexpr Index controls_per_chunk = ColumnBlock::ColsAtCompileTime / 3;
@@ -206,18 +207,18 @@ class Arap final : public HandleDeformation {
 
   /// The last minimum is cached: rounds evaluate some rows of the surface, then J and the whole surface at the same
   /// controls.
-  std::shared_ptr<const Minimum> minimum(const ControlsView& p, bool exact) const {
+  std::shared_ptr<const Minimum> minimum(const ControlsView& p, bool exact, const Execution& execution) const {
     std::shared_ptr<const Minimum> last = last_minimum();
     const bool is_known = last && last->p == p;
     if (is_known && (last->is_exact || !exact)) return last;
     const Controls d = p - rest_controls_;
-    Minimum found = is_known ? *last : Minimum{p, {}, begin(d)};
+    Minimum found = is_known ? *last : Minimum{p, {}, begin(d, execution)};
     if (!is_known) {
-      descend(found.descent, d, rough_motion);
+      descend(found.descent, d, rough_motion, execution);
       found.rough = found.descent.shape;
     }
     if (exact) {
-      descend(found.descent, d, least_motion);
+      descend(found.descent, d, least_motion, execution);
       found.descent.acceleration.restart();  // frees its memory
     }
     found.is_exact = exact;
@@ -239,14 +240,14 @@ class Arap final : public HandleDeformation {
     return q;
   }
 
-  Descent begin(const Controls& d) const {
+  Descent begin(const Controls& d, const Execution& execution) const {
     const Positions start = map_.follow(d);
-    return {{start, cells_.fit(start)}, start, start};
+    return {{start, cells_.fit(start, execution)}, start, start};
   }
 
   /// Repeats local and global steps until one moves less than `least` times the mesh's size. A descent that is
   /// continued later has the same bits as an uninterrupted one.
-  void descend(Descent& descent, const Controls& d, double least) const {
+  void descend(Descent& descent, const Controls& d, double least, const Execution& execution) const {
     if (d.isZero(0)) return;
     auto& [shape, start, plain, acceleration, before, step] = descent;
     for (; step < most_steps; ++step) {
@@ -254,7 +255,7 @@ class Arap final : public HandleDeformation {
       if (now > before * (1 + slack)) {  // the extrapolation failed: a global step never raises the energy
         acceleration.restart();
         shape.u = plain;
-        shape.fits = cells_.fit(shape.u, shape.fits);
+        shape.fits = cells_.fit(shape.u, shape.fits, execution);
         now = energy(shape.u, shape.fits, d);
       }
       before = now;
@@ -262,7 +263,7 @@ class Arap final : public HandleDeformation {
       const double motion = (plain - shape.u).cwiseAbs().maxCoeff();
       if (motion <= least * size_) return;
       shape.u = acceleration.next(shape.u, plain);
-      shape.fits = cells_.fit(shape.u, shape.fits);
+      shape.fits = cells_.fit(shape.u, shape.fits, execution);
     }
   }
 

@@ -12,6 +12,8 @@ namespace {
 /// In radians. Each fit starts from the previous one, and the turns shrink as the positions converge.
 constexpr double settled_turn = 1e-3;
 
+constexpr Index cells_per_chunk = 256;
+
 using Edge = SymmetricMatrix::InnerIterator;
 
 /// The edge from its neighbor to a vertex.
@@ -32,18 +34,21 @@ Eigen::Matrix3d RigidCells::spread(const Positions& u, Index vertex) const {
   return sum;
 }
 
-std::vector<RotationFit> RigidCells::fit(const Positions& u) const {
+std::vector<RotationFit> RigidCells::fit(const Positions& u, const Execution& execution) const {
   std::vector<RotationFit> fits(static_cast<std::size_t>(weights_.cols()));
-  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) fits[at(vertex)] = fit_rotation(spread(u, vertex));
+  execution.for_chunks(static_cast<Index>(weights_.cols()), cells_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index vertex = begin; vertex < end; ++vertex) fits[at(vertex)] = fit_rotation(spread(u, vertex));
+  });
   return fits;
 }
 
-std::vector<RotationFit> RigidCells::fit(const Positions& u, const std::vector<RotationFit>& nearby) const {
+std::vector<RotationFit> RigidCells::fit(const Positions& u, const std::vector<RotationFit>& nearby,
+                                         const Execution& execution) const {
   std::vector<RotationFit> fits(nearby.size());
-  for (Index vertex = 0; vertex < weights_.cols(); ++vertex) {
-    const auto cell = static_cast<std::size_t>(vertex);
-    fits[cell] = fit_rotation(spread(u, vertex), nearby[cell].rotation, settled_turn);
-  }
+  execution.for_chunks(static_cast<Index>(weights_.cols()), cells_per_chunk, [&](Index begin, Index end, Index) {
+    for (Index vertex = begin; vertex < end; ++vertex)
+      fits[at(vertex)] = fit_rotation(spread(u, vertex), nearby[at(vertex)].rotation, settled_turn);
+  });
   return fits;
 }
 

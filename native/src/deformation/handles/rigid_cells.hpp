@@ -6,6 +6,7 @@
 
 #include "deformation/handles/rotation_fit.hpp"
 #include "deformation/metric/sparse_factor.hpp"
+#include "stiv/execution.hpp"
 
 namespace stiv {
 
@@ -16,10 +17,12 @@ class RigidCells {
   RigidCells(const SymmetricMatrix& weights, Positions rest);
 
   /// The local step: the rotation of each cell from rest to positions rest + u.
-  std::vector<RotationFit> fit(const Positions& u) const;
+  /// @throws Interrupted
+  std::vector<RotationFit> fit(const Positions& u, const Execution& execution) const;
   /// The same, starting from the rotations at nearby positions. The error is about the square of the turns between
   /// them.
-  std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby) const;
+  std::vector<RotationFit> fit(const Positions& u, const std::vector<RotationFit>& nearby,
+                               const Execution& execution) const;
 
   /// 1/4 sum_i sum_j w_ij |(u_i - u_j) - (R_i - 1)(rest_i - rest_j)|^2.
   double energy(const Positions& u, const std::vector<RotationFit>& fits) const;
