@@ -386,6 +386,7 @@ MESSAGES = {
     "Surfaces pass through each other": "表面互相穿过",
     "Surfaces that are rendered": "渲染的表面",
     "Surfaces that the viewport shows in Object Mode and Edit Mode": "视口在物体模式和编辑模式中显示的表面",
+    "Take the best result within this time; 0 for no limit": "采用此时间内的最佳结果；0表示不限",
     "Target": "目标物",
     "Tested {}, {}": "已测试 {}，{}",
     "The box around the object, open above": "物体周围的盒子，上方开口",

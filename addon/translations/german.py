@@ -386,6 +386,7 @@ MESSAGES = {
     "Surfaces pass through each other": "Flächen gehen durcheinander",
     "Surfaces that are rendered": "Flächen, die gerendert werden",
     "Surfaces that the viewport shows in Object Mode and Edit Mode": "Flächen, die die Ansicht im Objekt- und Bearbeitungsmodus zeigt",
+    "Take the best result within this time; 0 for no limit": "Das beste Ergebnis innerhalb dieser Zeit nehmen; 0 für keine Grenze",
     "Target": "Ziel",
     "Tested {}, {}": "Geprüft: {}, {}",
     "The box around the object, open above": "Der Quader um das Objekt, oben offen",

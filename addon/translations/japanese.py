@@ -386,6 +386,7 @@ MESSAGES = {
     "Surfaces pass through each other": "サーフェスが貫通します",
     "Surfaces that are rendered": "レンダリングされるサーフェス",
     "Surfaces that the viewport shows in Object Mode and Edit Mode": "オブジェクトモードと編集モードでビューポートに表示されるサーフェス",
+    "Take the best result within this time; 0 for no limit": "この時間内の最良の結果を採用、0 は無制限",
     "Target": "ターゲット",
     "Tested {}, {}": "検査済み: {}、{}",
     "The box around the object, open above": "オブジェクトを囲む上が開いた箱",

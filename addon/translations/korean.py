@@ -386,6 +386,7 @@ MESSAGES = {
     "Surfaces pass through each other": "표면이 서로 통과함",
     "Surfaces that are rendered": "렌더되는 표면",
     "Surfaces that the viewport shows in Object Mode and Edit Mode": "뷰포트가 오브젝트 모드와 에디트 모드에서 보여 주는 표면",
+    "Take the best result within this time; 0 for no limit": "이 시간 안의 최선의 결과를 사용; 0은 제한 없음",
     "Target": "대상",
     "Tested {}, {}": "검사함 {}, {}",
     "The box around the object, open above": "오브젝트 둘레의 상자, 위가 열림",

@@ -68,6 +68,7 @@ py::dict dict_of(const RepairResult& result) {
   py::dict values;
   values["status"] = name_of(result.status);
   values["refusal"] = name_of(result.refusal);
+  values["out_of_time"] = result.out_of_time;
   values["positions"] = result.positions;
   values["pairs"] = as_rows(result.pairs.faces);
   values["loose_edge_pairs"] = as_rows(result.pairs.loose_edges);

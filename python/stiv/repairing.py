@@ -26,6 +26,10 @@ _REFUSALS = {
     "not_freed": "no contraction is free of intersections; the best leaves {fewest_pairs} pairs",
     "too_far": "the repaired shape deviates by {deviation:.2%}, more than max_deviation allows",
 }
+_OUT_OF_TIME = {
+    "repaired": "the time limit ended the repair; a longer one may come closer",
+    "budget": "the time limit was too short",
+}
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,11 @@ class RepairResult:
     """Result of a repair. Only "already_free" and "repaired" are free of intersections, by the exact test."""
 
     #: "already_free", "repaired", "refused" (`message` is the reason), "cancelled", or "budget" (out of time without a
-    #: repair); the last three return the given positions
+    #: repair within max_deviation); the last three return the given positions
     status: str
     refusal: str  #: "", "coincident", "held", "not_freed" or "too_far"
-    message: str  #: reason of the refusal as text
+    message: str  #: reason of the refusal, or that the time budget ended the repair, as text
+    out_of_time: bool  #: the time budget ended the repair: with more time, its result may be closer
     surface: Surface  #: the one given; with `weld` the welded one
     positions: NDArray[np.float64]  #: (N', 3) of that surface; with a deformation the controls, (m, 3)
     vertex_map: Indices  #: (N,) vertex of that surface for each given vertex
@@ -86,6 +91,7 @@ def repair(
     cage              Surface of the controls, or its triangles (C, 3), which is contracted; required with a deformation
     cancel, progress  as for EditSession.edit
 
+    The time budget of `options.edit` is that of the whole repair: when it ends, the best repair so far is the result.
     Success requires that the exact test finds nothing. Otherwise the positions stay the same, and the result lists the
     intersections. These contractions are tried in order until one deviates little: each body that all pairs have in
     common, closed bodies first; everything; components shrunk until they are apart, then regions around the
@@ -140,6 +146,8 @@ def _native_arguments(
 
 def _result_of(values: dict[str, Any], welded: Welded) -> RepairResult:
     message = _REFUSALS[values["refusal"]].format(**values)
+    if values["out_of_time"]:
+        message = _OUT_OF_TIME[values["status"]]
     return RepairResult(message=message, surface=welded.surface, vertex_map=welded.vertex_map, **values)
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -127,8 +129,34 @@ def test_progress_is_called_and_a_cancelled_repair_changes_nothing(tube: Tangle)
 
 def test_a_time_budget_ends_a_repair(tube: Tangle) -> None:
     result = stiv.repair(tube.surface, tube.positions, stiv.RepairOptions(edit=stiv.EditOptions(time_budget=1e-9)))
-    assert result.status == "budget"
+    assert (result.status, result.out_of_time) == ("budget", True)
+    assert result.message == "the time limit was too short"
     assert np.array_equal(result.positions, tube.positions)
+
+
+@pytest.mark.parametrize("max_deviation", [0.0, 10.0])
+def test_a_time_budget_that_ends_during_the_expansion_leaves_the_best_repair(tube: Tangle, max_deviation: float) -> None:
+    budget, begin, expansions = 3.0, time.monotonic(), 0
+
+    def wait_in_second_round(phase: str, fraction: float) -> None:
+        nonlocal expansions
+        expansions += phase == "rounds"
+        while expansions > 1 and time.monotonic() < begin + budget + 0.1:
+            time.sleep(0.01)
+
+    options = stiv.RepairOptions(edit=stiv.EditOptions(time_budget=budget), max_deviation=max_deviation)
+    result = stiv.repair(tube.surface, tube.positions, options, progress=wait_in_second_round)
+    assert result.out_of_time
+    if max_deviation == 0:
+        assert result.status == "budget"
+        assert np.array_equal(result.positions, tube.positions)
+    else:
+        assert result.status == "repaired"
+        assert result.message == "the time limit ended the repair; a longer one may come closer"
+        assert not has_intersections(tube, result.positions)
+        whole = stiv.repair(tube.surface, tube.positions)
+        assert not whole.out_of_time
+        assert whole.deviation <= result.deviation
 
 
 def test_contracting_and_expanding_by_hand(tube: Tangle) -> None:

@@ -103,8 +103,9 @@ class Repair {
       result_.pairs_before = result_.fewest_pairs = result_.pairs.count();
       if (!result_.pairs.empty()) try_strategies();
     } catch (const Interrupted&) {
-      if (!best_found_ || execution_.cancel_requested())
-        result_.status = execution_.cancel_requested() ? RepairStatus::cancelled : RepairStatus::budget;
+      result_.out_of_time = !execution_.cancel_requested();
+      if (!best_found_ || !result_.out_of_time)
+        result_.status = result_.out_of_time ? RepairStatus::budget : RepairStatus::cancelled;
       else
         conclude();
     }
@@ -169,6 +170,10 @@ class Repair {
   bool is_good() const { return best_found_ && result_.deviation <= options_.good_deviation; }
 
   void refuse(RepairRefusal reason) {
+    if (result_.out_of_time) {
+      result_.status = RepairStatus::budget;  // more time may find another repair
+      return;
+    }
     result_.status = RepairStatus::refused;
     result_.refusal = reason;
   }
@@ -176,7 +181,8 @@ class Repair {
   /// Accepts the best repair if its deviation is small enough and the exact test of the whole surface confirms it.
   void conclude() {
     if (!best_found_) return refuse(RepairRefusal::not_freed);
-    if (!execution_.budget_used_up()) refine();
+    result_.out_of_time = result_.out_of_time || execution_.budget_used_up();
+    if (!result_.out_of_time) refine();
     if (result_.deviation > options_.max_deviation) return refuse(RepairRefusal::too_far);
     Execution uninterrupted(execution_.threads());
     if (!test_.find_all(caged_.deformation->surface_in_range(best_), uninterrupted).empty())

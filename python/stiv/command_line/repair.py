@@ -112,10 +112,11 @@ def summary(report: dict[str, Any]) -> str:
     if report["status"] == "already_free":
         return f"{name}: no intersections; {report['output']} is a copy ({report['seconds']:.2f} s)"
     if report["free"]:
-        return (
+        text = (
             f"{name}: resolved {report['pairs_before']:,} intersections, mean deviation {report['deviation']:.2%}; "
             f"written to {report['output']} ({report['seconds']:.2f} s)"
         )
+        return f"{text}; {report['message']}" if report["message"] else text
     lines = [f"{name}: not repaired, nothing was written: {report['message']}"]
     lines += [f"  {_text(pair['first'])} - {_text(pair['second'])}" for pair in report["pairs"][:SHOWN_PAIRS]]
     more = report["pairs_left"] - SHOWN_PAIRS

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Contraction, expansion and repair of Blender's objects, examined without the package, except for its exact test."""
 
+import time
+
 import bmesh
 import bpy
 import numpy as np
@@ -346,3 +348,25 @@ def test_welding_refuses_shared_meshes_and_shape_keys_by_name() -> None:
         tube.shape_key_add(name=name)
     with pytest.raises(stiv.InputError, match="Tube: has shape keys and cannot be welded"):
         repair_scene(bpy.context, RepairSettings(weld=True))
+
+
+def test_a_time_limit_leaves_the_start_or_the_best_repair_and_says_so() -> None:
+    tube = add_tube()
+    select(tube)
+    before = snapshot()
+    report = repair_scene(bpy.context, RepairSettings(EditSettings(time_budget=1e-9)))
+    assert (report.status, report.changed) == ("budget", False)
+    assert report.message == "raise the time limit, or repair fewer objects at once"
+    assert snapshot() == before
+    begin, rounds = time.monotonic(), 0
+
+    def wait_in_second_round(phase: str, fraction: float) -> None:
+        nonlocal rounds
+        rounds += phase == "rounds"
+        while rounds > 1 and time.monotonic() < begin + 3.1:
+            time.sleep(0.01)
+
+    settings = RepairSettings(EditSettings(time_budget=3.0), max_deviation=10.0)
+    report = repair_scene(bpy.context, settings, progress=wait_in_second_round)
+    assert (report.status, report.message) == ("repaired", "time limit reached; raise it to come closer")
+    assert pairs_shown() == 0

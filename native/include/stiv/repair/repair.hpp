@@ -24,7 +24,7 @@ enum class RepairStatus {
   repaired,      ///< the exact test finds no intersections at the new positions
   refused,       ///< positions unchanged; `refusal` says why
   cancelled,     ///< positions unchanged
-  budget         ///< positions unchanged: the time budget ended before any repair was found
+  budget         ///< positions unchanged: the time budget ended before a repair within max_deviation was found
 };
 
 enum class RepairRefusal {
@@ -39,6 +39,7 @@ struct RepairResult {
   RepairStatus status = RepairStatus::already_free;
   RepairRefusal refusal = RepairRefusal::none;
   Controls positions;      ///< (m, 3); the input unless repaired
+  bool out_of_time = false;  ///< the time budget ended the repair: a longer one may find another, or a closer one
   StaticPairs pairs;       ///< intersections at `positions`
   Index pairs_before = 0;  ///< number of intersecting pairs of the input
   Index fewest_pairs = 0;  ///< number of intersecting pairs after the best contraction

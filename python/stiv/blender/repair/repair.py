@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import time
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import bpy
@@ -23,13 +24,20 @@ from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
 
+OUT_OF_TIME_REASONS = {  # by status
+    "repaired": "time limit reached; raise it to come closer",
+    "budget": "raise the time limit, or repair fewer objects at once",
+}
+LEAST_TIME = 1e-3  # seconds of a solve after the time limit: it ends at once, and says so
+
 
 @dataclass(frozen=True)
 class RepairSettings:
     """Choices for a repair.
 
     Attributes:
-        edit: separation, roles, ignored pairs, threads, time budget.
+        edit: separation, roles, ignored pairs, threads; its time_budget limits the whole repair, whose result is then
+            the best one so far, if there is one.
         max_deviation: maximum root mean square distance from the start, in diagonals of the moving surface.
         weld: merge coincident vertices first; Object Mode only.
     """
@@ -53,6 +61,8 @@ class BlenderRepair:
         self._before = find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads)
         self._result: stiv.RepairResult | None = None
         self._attempts = 0
+        budget = settings.edit.time_budget
+        self._end = time.monotonic() + budget if budget > 0 else float("inf")
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: RepairSettings | None = None) -> BlenderRepair:
@@ -75,7 +85,7 @@ class BlenderRepair:
     def solve_steps(self) -> Steps[None]:
         """Steps of `solve`."""
         options = stiv.RepairOptions(
-            edit=self._snapshot.edit_options(), moves=self._snapshot.moves, max_deviation=self._settings.max_deviation
+            edit=self._edit_options(), moves=self._snapshot.moves, max_deviation=self._settings.max_deviation
         )
         with self._snapshot.naming_topology_changes():
             self._result = yield Call(
@@ -95,7 +105,7 @@ class BlenderRepair:
                 "rounding causes intersections; use a larger minimum distance"
             )  # fmt: skip
         if result.status != "repaired":
-            return self._refused(result.message)
+            return self._refused(OUT_OF_TIME_REASONS.get(result.status, result.message))
         verification = self._snapshot.verify(result.positions)
         if verification.passed:
             return self._repaired(result.positions)
@@ -105,6 +115,13 @@ class BlenderRepair:
             self._snapshot = self._snapshot.add_triangles(verification.flips)
             return None
         return self._refused(f"repaired, but {verification.message}")
+
+    def _edit_options(self) -> stiv.EditOptions:
+        """The options of the expansion, with the time that is left."""
+        options = self._snapshot.edit_options()
+        if self._end == float("inf"):
+            return options
+        return replace(options, time_budget=max(self._end - time.monotonic(), LEAST_TIME))
 
     def restore(self) -> None:
         """Restore everything exactly."""
@@ -121,7 +138,8 @@ class BlenderRepair:
         deviation = self._snapshot.deviation(controls)
         before, faces = len(self._before), count_faces(self._before)
         contracted = self._result.contracted
-        return ReshapeReport("repaired", True, "", (), before, deviation, contracted, faces_before=faces)
+        message = OUT_OF_TIME_REASONS["repaired"] if self._result.out_of_time else ""
+        return ReshapeReport("repaired", True, message, (), before, deviation, contracted, faces_before=faces)
 
     def _refused(self, message: str) -> ReshapeReport:
         assert self._result is not None
