@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A limit for the redo panel: Blender calls `execute` again and waits, without events that could cancel it."""
+"""Limits of `execute`, for which Blender waits without events that could cancel it: of the redo panel, of scripts."""
 
 from __future__ import annotations
 
@@ -17,16 +17,18 @@ LIMIT = 5  # seconds; then the part of the way that is solved stays
 
 
 def is_redo(operator: bpy.types.Operator) -> bool:
-    """Whether the redo panel calls `execute`; scripts and drags have no limit."""
+    """Whether the redo panel calls `execute`. Scripts have the operator's own limit, drags none."""
     return bool(operator.options.is_repeat) and not bpy.app.background
 
 
-def run_within(context: bpy.types.Context, steps: stiv_blender.Steps[Result]) -> tuple[Result, bool]:
-    """Make all calls of the steps behind the wait cursor; after the limit they are cancelled.
+def run_within(
+    context: bpy.types.Context, steps: stiv_blender.Steps[Result], seconds: float
+) -> tuple[Result, bool]:
+    """Make all calls of the steps behind the wait cursor; after these seconds they are cancelled.
 
     Returns the result, and whether calls were cancelled.
     """
-    end = time.monotonic() + LIMIT
+    end = time.monotonic() + seconds
     token = stiv_blender.CancelToken()
 
     def look_at_clock(*_progress: object) -> None:

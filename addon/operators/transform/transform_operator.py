@@ -104,7 +104,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
             motion = self._motion(transform, frame)
             reused = _reused(edit, same, motion)
             steps = self._applied(context, edit, _solve_values(edit, motion, transform, frame))
-            ended = reused or self._run(context, steps)
+            ended = reused or self._run(context, steps, self.time_limit)
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error, edit)
         return self.finish_task(context, ended)
@@ -164,13 +164,14 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         edit.finish()
         return ended
 
-    def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any]) -> Any:
-        """Make all calls of the steps at once; the redo panel does not wait without limit."""
-        if not redo_limit.is_redo(self):
+    def _run(self, context: bpy.types.Context, steps: stiv_blender.Steps[Any], seconds: float = 0.0) -> Any:
+        """Make all calls of the steps at once, for the redo panel within its limit, else within `seconds` (0: any)."""
+        limit = redo_limit.LIMIT if redo_limit.is_redo(self) else seconds
+        if limit == 0:
             return stiv_blender.run_steps(steps)
-        result, was_stopped = redo_limit.run_within(context, steps)
+        result, was_stopped = redo_limit.run_within(context, steps, limit)
         if was_stopped:
-            say(self, "WARNING", translate("stopped after {} seconds, short of the goal").format(redo_limit.LIMIT))
+            say(self, "WARNING", translate("stopped after {} seconds, short of the goal").format(f"{limit:.3g}"))
         return result
 
     def _steps(self, context: bpy.types.Context) -> stiv_blender.Steps[EndedEdit]:

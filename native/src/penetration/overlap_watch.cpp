@@ -96,7 +96,7 @@ void OverlapWatch::begin(const Positions& q, Execution& execution) {
 }
 
 const std::vector<unsigned char>& OverlapWatch::overlapping(const Positions& q, Execution& execution) {
-  return measure(watched_rows(q), execution).overlapping;
+  return measure_accepted(watched_rows(q), execution).overlapping;
 }
 
 bool OverlapWatch::is_deeper(const Positions& q, Execution& execution) {
@@ -105,7 +105,7 @@ bool OverlapWatch::is_deeper(const Positions& q, Execution& execution) {
 
 double OverlapWatch::free_fraction(const Positions& from, const Positions& to, Execution& execution) {
   const Positions start = watched_rows(from), end = watched_rows(to);
-  const std::vector<unsigned char> before = measure(start, execution).overlapping;
+  const std::vector<unsigned char> before = measure_accepted(start, execution).overlapping;
   double strides = 0;
   for (std::size_t k = 0; k < watched_.size(); ++k)
     if (before[k] != 0)
@@ -138,6 +138,11 @@ const OverlapWatch::State& OverlapWatch::measure(Positions q, Execution& executi
   last_.q = std::move(q);
   mark_overlapping(last_, intersecting);
   return last_;
+}
+
+const OverlapWatch::State& OverlapWatch::measure_accepted(Positions q, Execution& execution) {
+  if (accepted_.q.rows() != q.rows() || accepted_.q != q) accepted_ = measure(std::move(q), execution);
+  return accepted_;
 }
 
 /// A pair overlaps if its surfaces intersect, or one body lies inside the other.

@@ -49,6 +49,7 @@ class OverlapWatch {
 
   Positions watched_rows(const Positions& q) const;
   const State& measure(Positions q, Execution& execution);
+  const State& measure_accepted(Positions q, Execution& execution);
   void mark_overlapping(State& state, const IndexPairs& intersecting) const;
   bool is_deeper(const State& state) const;
   std::size_t pair_of(const std::array<Index, 2>& bodies) const;
@@ -67,6 +68,7 @@ class OverlapWatch {
   std::optional<BodyPenetrations> penetrations_;
   std::vector<BodyPenetrations::Pair> measured_;
   State start_, last_;
+  State accepted_;  ///< the start of the last step: a search for the largest free step tries many from there
 };
 
 }  // namespace stiv

@@ -25,14 +25,11 @@ def one_call(most: int) -> Steps[int]:
 
 
 @pytest.mark.parametrize(("limit", "expected"), [(-1.0, (0, True)), (1e9, (7, False))])
-def test_calls_after_the_limit_are_cancelled(
-    monkeypatch: pytest.MonkeyPatch, limit: float, expected: tuple[int, bool]
-) -> None:
-    monkeypatch.setattr(redo_limit, "LIMIT", limit)
-    assert redo_limit.run_within(bpy.context, one_call(7)) == expected
+def test_calls_after_the_limit_are_cancelled(limit: float, expected: tuple[int, bool]) -> None:
+    assert redo_limit.run_within(bpy.context, one_call(7), limit) == expected
 
 
-def test_scripts_have_no_limit() -> None:
+def test_the_limit_of_the_redo_panel_is_not_that_of_scripts() -> None:
     class Operator:
         class options:  # noqa: N801 (Blender's name)
             is_repeat = True

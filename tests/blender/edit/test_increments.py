@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from building import moved, shift, stretch, turn
 
-from stiv.blender.edit.increments import count_increments, interpolate_transform
+from stiv.blender.edit.increments import StillIncrements, count_increments, interpolate_transform
 
 
 def test_translation_is_a_line() -> None:
@@ -54,3 +54,14 @@ def test_increments_of_nothing_and_of_very_much() -> None:
     assert count_increments(lambda fraction: shift(fraction * 1e9), points, 0.1, 50) == 50
     assert count_increments(lambda fraction: stretch(1 - fraction), points, 0.1, 1000) == 10
     assert count_increments(lambda fraction: shift(fraction), np.empty((0, 3)), 0.1, 1000) == 1
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
+def test_increments_in_a_row_that_hold_the_controls_end_the_others(scale: float) -> None:
+    asked, held, moved_on = scale * np.eye(3), 1e-4 * scale * np.eye(3), 0.5 * scale * np.eye(3)
+    still = StillIncrements()
+    for moved_by in (held, held, held, moved_on, held, held, held):
+        still.add(moved_by, asked)
+        assert not still.are_many
+    still.add(0 * held, asked)
+    assert still.are_many

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -19,7 +20,7 @@ from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
-from stiv.blender.edit.increments import Path, split_motion
+from stiv.blender.edit.increments import Path, StillIncrements, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
@@ -36,6 +37,8 @@ from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
+
+LEAST_TIME = 1e-3  # seconds of an increment after the time budget: it ends at once, and says so
 
 
 class BlenderEdit:
@@ -356,6 +359,9 @@ class BlenderEdit:
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
 
+        Where contact holds the selection for several increments, only the last one follows. A time budget of the
+        settings limits the whole call; the result then has the status "budget".
+
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
         return run(self.apply_steps(motion, path), **execution)
@@ -368,15 +374,28 @@ class BlenderEdit:
     def _apply_increments(self, motion: Motion, path: Path | None) -> Steps[stiv.EditResult]:
         results: list[stiv.EditResult] = []
         increments = [*split_motion(motion, path, self.assembly.positions[self._moving_vertices])]
-        for number, increment in enumerate(increments):
-            yield number / len(increments)
-            results.append((yield from self.drag_steps(increment)))
+        still, end = StillIncrements(), time.monotonic() + (self._settings.time_budget or np.inf)
+        for number, increment in enumerate(increments, 1):
+            if still.are_many and number < len(increments):
+                continue
+            yield (number - 1) / len(increments)
+            results.append((yield from self._drag_increment(increment, still, end)))
             if results[-1].status in ("cancelled", "budget"):
                 return merge_results(results)
             if _only_goes_deeper(results[-1]):
                 self._goal = self._goal_of(motion)
                 return merge_results(results)
+            if time.monotonic() > end and (number < len(increments) or results[-1].status != "reached"):
+                return replace(merge_results(results), status="budget")
         return merge_results([*results, (yield from self.settle_steps())])
+
+    def _drag_increment(self, increment: Motion, still: StillIncrements, end: float) -> Steps[stiv.EditResult]:
+        """Steps of one increment, until `end`, a time of the monotonic clock; infinite: any."""
+        controls, goal = self.controls, self._goal
+        left = None if end == np.inf else max(end - time.monotonic(), LEAST_TIME)
+        result = yield from self.drag_steps(increment, left)
+        still.add(self.controls - controls, self._goal - goal)
+        return result
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""

@@ -77,6 +77,31 @@ def _turn(before: Floats, after: Floats) -> float:
     return float(np.linalg.norm(rotation_vector(nearest_rotation(after @ np.linalg.pinv(before)))))
 
 
+STILL = 1e-3  # of the motion of the goal: controls that move less stay where they are
+MOST_STILL = 4  # increments in a row, after which the last one decides
+
+
+class StillIncrements:
+    """Counts increments in a row in which contact holds the controls.
+
+    The goal moves on without them: where they cannot follow a few increments, only the last goal matters, and the way
+    to it is as long from here as from the increments between.
+    """
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def add(self, moved: Floats, asked: Floats) -> None:
+        """Add an increment by the motions of the controls and of their goal, (m, 3) each."""
+        is_still = np.abs(moved).max(initial=0) <= STILL * np.abs(asked).max(initial=0)
+        self._count = self._count + 1 if is_still else 0
+
+    @property
+    def are_many(self) -> bool:
+        """May the increments up to the last one be left out?"""
+        return self._count >= MOST_STILL
+
+
 LONGEST = 0.02  # increment, in diagonals of the moving points
 MOST = 200  # increments for each value
 
