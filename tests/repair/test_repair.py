@@ -135,7 +135,9 @@ def test_a_time_budget_ends_a_repair(tube: Tangle) -> None:
 
 
 @pytest.mark.parametrize("max_deviation", [0.0, 10.0])
-def test_a_time_budget_that_ends_during_the_expansion_leaves_the_best_repair(tube: Tangle, max_deviation: float) -> None:
+def test_a_time_budget_that_ends_during_the_expansion_leaves_the_best_repair(
+    tube: Tangle, max_deviation: float
+) -> None:
     budget, begin, expansions = 3.0, time.monotonic(), 0
 
     def wait_in_second_round(phase: str, fraction: float) -> None:

@@ -21,9 +21,7 @@ def is_redo(operator: bpy.types.Operator) -> bool:
     return bool(operator.options.is_repeat) and not bpy.app.background
 
 
-def run_within(
-    context: bpy.types.Context, steps: stiv_blender.Steps[Result], seconds: float
-) -> tuple[Result, bool]:
+def run_within(context: bpy.types.Context, steps: stiv_blender.Steps[Result], seconds: float) -> tuple[Result, bool]:
     """Make all calls of the steps behind the wait cursor; after these seconds they are cancelled.
 
     Returns the result, and whether calls were cancelled.

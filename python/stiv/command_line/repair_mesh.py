@@ -38,7 +38,9 @@ def repair_mesh(source: Path, output: Path, choices: RepairChoices) -> RepairOut
     with fraction_bar("repair") as progress:
         result = stiv.repair(joined.surface, joined.positions, options, progress=progress)
     pairs = _named_pairs(mesh, result.pairs.tolist())
-    outcome = RepairOutcome(result.status, result.message, result.pairs_before, pairs, result.deviation, result.contracted)
+    outcome = RepairOutcome(
+        result.status, result.message, result.pairs_before, pairs, result.deviation, result.contracted
+    )
     if not outcome.free:
         return outcome
     positions = result.positions[joined.vertex_map]
