@@ -58,7 +58,7 @@ def test_increments_of_nothing_and_of_very_much() -> None:
 
 @pytest.mark.parametrize("scale", [1e-7, 1.0, 1e7])
 def test_increments_in_a_row_that_hold_the_controls_end_the_others(scale: float) -> None:
-    asked, held, moved_on = scale * np.eye(3), 1e-4 * scale * np.eye(3), 0.5 * scale * np.eye(3)
+    asked, held, moved_on = scale * np.eye(3), 1e-5 * scale * np.eye(3), 0.5 * scale * np.eye(3)
     still = StillIncrements()
     for moved_by in (held, held, held, moved_on, held, held, held):
         still.add(moved_by, asked)

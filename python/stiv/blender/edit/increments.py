@@ -77,7 +77,7 @@ def _turn(before: Floats, after: Floats) -> float:
     return float(np.linalg.norm(rotation_vector(nearest_rotation(after @ np.linalg.pinv(before)))))
 
 
-STILL = 1e-3  # of the motion of the goal: controls that move less stay where they are
+STILL = 1e-4  # of the motion of the goal: controls that move less stay where they are
 MOST_STILL = 4  # increments in a row, after which the last one decides
 
 
