@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -555,3 +556,17 @@ def test_a_pose_that_a_copy_shows_differently_is_refused_without_applying_its_mo
     with pytest.raises(stiv.InputError, match="its pose cannot be followed") as refused:
         BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
     assert not isinstance(refused.value, UnsupportedStackError)
+
+
+def test_there_is_no_surface_at_channels_that_blender_cannot_store() -> None:
+    """Diverging rounds tried such: NumPy warned, and the pose became infinite."""
+    box_below_hand()
+    edit = BlenderEdit.begin(bpy.context, SETTINGS, kind="rotate")
+    (posed,) = (each.posed for each in edit.control_sets if each.posed is not None)
+    values = edit.controls.copy()
+    assert np.isfinite(posed.deformation.surface(values)).all()
+    values[0, 0] = 1e39
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(stiv.InfeasibleError):
+            posed.deformation.surface(values)

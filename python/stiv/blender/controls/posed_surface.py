@@ -24,6 +24,7 @@ from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
 from stiv.seams import Seams
 
 TURNED = 1e-5  # change of a matrix above which a bone turns against its parent
+LARGEST = float(np.finfo(np.float32).max)  # value of a channel
 STEP = 0.01  # of the differences for a Jacobian: radians, factors, and diagonals of the surface
 FAR = 0.5  # the same for poses that show which seams open
 
@@ -187,8 +188,10 @@ class _Poses:
     def evaluate(self, values: Floats, points: Floats | None = None) -> Floats | None:
         """World positions, (n, 3), at scalars, (k,), and controls of the garments, (m, 3); None: those before.
 
-        None if the topology of a mesh differs.
+        None if the topology of a mesh differs, or if Blender cannot store the scalars: rounds that diverge try such.
         """
+        if not np.abs(values).max(initial=0) <= LARGEST:
+            return None
         self._points = self._points if points is None else points
         with kept_twins():
             found = self._observe(values)
