@@ -58,7 +58,7 @@ def test_a_move_into_the_floor_stops_above_it(settings: EditSettings) -> None:
 
 
 def drags_to(motion: np.ndarray, most_still: int, monkeypatch: pytest.MonkeyPatch) -> tuple[np.ndarray, int]:
-    """The moving surface after a typed value, and the number of increments solved, if at most `most_still` hold still."""
+    """The moving surface after a typed value, and the number of solved increments, of which few may hold still."""
     monkeypatch.setattr(increments, "MOST_STILL", most_still)
     edit = begin(settings=EditSettings())
     count, drag_steps = 0, edit.drag_steps
