@@ -38,12 +38,12 @@ enum class RepairRefusal {
 struct RepairResult {
   RepairStatus status = RepairStatus::already_free;
   RepairRefusal refusal = RepairRefusal::none;
-  Controls positions;      ///< (m, 3); the input unless repaired
+  Controls positions;        ///< (m, 3); the input unless repaired
   bool out_of_time = false;  ///< the time budget ended the repair: a longer one may find another, or a closer one
-  StaticPairs pairs;       ///< intersections at `positions`
-  Index pairs_before = 0;  ///< number of intersecting pairs of the input
-  Index fewest_pairs = 0;  ///< number of intersecting pairs after the best contraction
-  Index steps = 0;         ///< steps of contraction, of all strategies
+  StaticPairs pairs;         ///< intersections at `positions`
+  Index pairs_before = 0;    ///< number of intersecting pairs of the input
+  Index fewest_pairs = 0;    ///< number of intersecting pairs after the best contraction
+  Index steps = 0;           ///< steps of contraction, of all strategies
   double deviation = 0;    ///< root mean square distance of the best repaired surface from the input, over the vertices
                            ///< that may move, in diagonals of their bounding box; also set if the repair is refused
                            ///< because of it
