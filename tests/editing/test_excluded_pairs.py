@@ -163,7 +163,7 @@ def layers_in_a_tilted_plane(seed: int, gap: float = 0.0) -> tuple[stiv.Surface,
 
 @pytest.mark.parametrize("seed", range(5))
 def test_faces_that_touch_do_not_keep_their_mesh_from_moving(seed: int) -> None:
-    """Each motion rounds anew, and with it the faces that touch intersect or part."""
+    """Each motion rounds in another way, so the faces that touch intersect or part."""
     surface, start, _ = layers_in_a_tilted_plane(seed)
     session = stiv.EditSession(surface, stiv.identity(len(start)), start, stiv.EditOptions(exclude="intersecting"))
     excluded = set(map(tuple, session.excluded.tolist()))

@@ -11,11 +11,11 @@
 
 namespace stiv {
 
-/// Number of excluded pairs that intersect. Those that rounding makes intersect do not count: pairs that touched at the
-/// start, and others, which did not intersect there, while they are no deeper than rounding.
+/// Number of excluded pairs that intersect. Those that only rounding makes intersect do not count: pairs that touched
+/// at the start, and others that did not intersect there, as long as their depth is that of rounding.
 struct IntersectionCount {
   std::size_t deep = 0;
-  std::size_t shallow = 0;  ///< at the start no deeper than rounding, which decides whether they still intersect
+  std::size_t shallow = 0;  ///< with the depth of rounding at the start, so that rounding decides whether they still do
 };
 
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
