@@ -33,6 +33,7 @@ BY_HAND = {  # of the compiled core, or composed of several parts
     "the system is singular to rounding; add handles or fixed vertices",
     "{} cuts {}, {} faces, may only part", "{} cuts {}, {} faces{}",
     "{} faces at torn seams cut each other; use Merge by Distance",
+    "{} cuts or touches itself, {} faces, left as it is",
     "{} intersects itself, {} faces, left as it is", "{} more objects intersect themselves, left as they are",
     "{} more pairs of objects cut each other, may only part", "{} triangles have no area", "{} vertices follow",
 }  # fmt: skip

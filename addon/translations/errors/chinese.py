@@ -147,6 +147,7 @@ MESSAGES = {
     "{} changed its number of points": "{} 的点数已改变",
     "{} changed its number of vertices": "{} 的顶点数已改变",
     "{} cuts itself in {}, {}": "{} 与自身相交 ({})，{}",
+    "{} cuts or touches itself, {} faces, left as it is": "{} 自相交或自接触，{} 个面，保持原样",
     "{} cuts {} in {}, {}": "{} 与 {} 相交 ({})，{}",
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",

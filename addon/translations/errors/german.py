@@ -147,6 +147,7 @@ MESSAGES = {
     "{} changed its number of points": "{}: die Zahl der Punkte hat sich geändert",
     "{} changed its number of vertices": "{}: die Zahl der Vertices hat sich geändert",
     "{} cuts itself in {}, {}": "{} schneidet sich selbst in {}, {}",
+    "{} cuts or touches itself, {} faces, left as it is": "{} schneidet oder berührt sich selbst, {} Flächen, bleibt so",
     "{} cuts {} in {}, {}": "{} schneidet {} in {}, {}",
     "{} cuts {}, {} faces, may only part": "{} schneidet {}, {} Flächen, dürfen sich nur trennen",
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",

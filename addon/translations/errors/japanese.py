@@ -147,6 +147,7 @@ MESSAGES = {
     "{} changed its number of points": "{} のポイント数が変わりました",
     "{} changed its number of vertices": "{} の頂点数が変わりました",
     "{} cuts itself in {}, {}": "{} が自己交差 ({})、{}",
+    "{} cuts or touches itself, {} faces, left as it is": "{} は自己交差または接触しています (面 {})。そのままにします",
     "{} cuts {} in {}, {}": "{} と {} が交差 ({})、{}",
     "{} cuts {}, {} faces, may only part": "{} と {} が交差、面 {}。離れることだけできます",
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",

@@ -147,6 +147,7 @@ MESSAGES = {
     "{} changed its number of points": "{}의 점 개수가 바뀜",
     "{} changed its number of vertices": "{}의 버텍스 개수가 바뀜",
     "{} cuts itself in {}, {}": "{} 자기 교차 ({}), {}",
+    "{} cuts or touches itself, {} faces, left as it is": "{}이(가) 자체 교차하거나 닿음, 면 {}개, 그대로 둠",
     "{} cuts {} in {}, {}": "{} 교차 {} ({}), {}",
     "{} cuts {}, {} faces, may only part": "{} 교차 {}, 면 {}개, 떨어질 수만 있음",
     "{} cuts {}, {} faces{}": "{} 교차 {}, 면 {}개{}",

@@ -151,3 +151,12 @@ def test_notes_name_a_few_objects_the_moving_ones_first_and_count_the_others() -
         "A intersects itself, 2 faces, left as it is", "B intersects itself, 2 faces, left as it is",
         "3 more objects intersect themselves, left as they are",
     )  # fmt: skip
+
+
+def test_a_note_counts_the_faces_that_touch_too() -> None:
+    cut, touching = (("A", 0), ("A", 1)), (("A", 1), ("A", 2))
+    exclusions = [Exclusions(frozenset(pairs)) for pairs in ([cut], [cut, touching])]
+    assert intersection_notes(exclusions[0], {"A"}, exclusions[0]) == ("A intersects itself, 2 faces, left as it is",)
+    assert intersection_notes(exclusions[0], {"A"}, exclusions[1]) == (
+        "A cuts or touches itself, 3 faces, left as it is",
+    )

@@ -144,7 +144,7 @@ class BlenderEdit:
         dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
         notes = tuple(note for each in self.control_sets for note in (each.note, each.passenger_note) if note)
         moving = {name for each in self.control_sets for name in each.names}
-        intersecting = intersection_notes(self._solver.intersecting, moving)
+        intersecting = intersection_notes(self._solver.intersecting, moving, self._solver.excluded)
         return (*dropped, *intersecting, *self._solver.loose_part_notes, *notes)
 
     @property

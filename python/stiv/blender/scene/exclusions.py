@@ -63,22 +63,31 @@ def loose_geometry_text(first: str, second: str) -> str:
     return fit_message("{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose", first, second)
 
 
-def intersection_notes(excluded: Exclusions, moving: Collection[str]) -> tuple[str, ...]:
+def intersection_notes(
+    excluded: Exclusions, moving: Collection[str], with_touching: Exclusions | None = None
+) -> tuple[str, ...]:
     """Notes about objects that intersect themselves, and about pairs of objects: the first few, and how many more.
 
-    moving: names of the objects that come first.
+    moving: names of the objects that come first. with_touching: with pairs that only touch, which rounding may make
+    intersect.
     """
-    faces: dict[tuple[str, str], set[FaceKey]] = {}
-    for sides, keys in excluded.faces.items():
-        first, second = sorted(name.partition(PART)[0] for name in sides)
-        faces.setdefault((first, second), set()).update(keys)
+    faces = _faces_of_objects(excluded)
+    touching = faces if with_touching is None else _faces_of_objects(with_touching)
     rows = sorted(faces.items(), key=lambda row: (not any(name in moving for name in row[0]), row[0]))
-    alone = [_intersection_note(*names, len(keys)) for names, keys in rows if names[0] == names[1]]
-    pairs = [_intersection_note(*names, len(keys)) for names, keys in rows if names[0] != names[1]]
+    alone = [_note_of_one(names[0], len(keys), len(touching[names])) for names, keys in rows if names[0] == names[1]]
+    pairs = [intersection_text(*names, len(keys), ", may only part") for names, keys in rows if names[0] != names[1]]
     return (
         *_first_of(pairs, "{} more pairs of objects cut each other, may only part"),
         *_first_of(alone, "{} more objects intersect themselves, left as they are"),
     )
+
+
+def _faces_of_objects(excluded: Exclusions) -> dict[tuple[str, str], set[FaceKey]]:
+    faces: dict[tuple[str, str], set[FaceKey]] = {}
+    for sides, keys in excluded.faces.items():
+        first, second = sorted(name.partition(PART)[0] for name in sides)
+        faces.setdefault((first, second), set()).update(keys)
+    return faces
 
 
 def _first_of(notes: list[str], rest: str) -> list[str]:
@@ -86,10 +95,10 @@ def _first_of(notes: list[str], rest: str) -> list[str]:
     return notes if others <= 1 else [*notes[:_MOST_NOTES], rest.format(others)]
 
 
-def _intersection_note(first: str, second: str, count: int) -> str:
-    if first == second:
-        return fit_message("{}" + f" intersects itself, {count} faces, left as it is", first)
-    return intersection_text(first, second, count, ", may only part")
+def _note_of_one(name: str, cutting: int, with_touching: int) -> str:
+    if with_touching > cutting:
+        return fit_message("{}" + f" cuts or touches itself, {with_touching} faces, left as it is", name)
+    return fit_message("{}" + f" intersects itself, {cutting} faces, left as it is", name)
 
 
 def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exclusions, str]:
