@@ -147,8 +147,9 @@ class EditSession:
     def excluded(self) -> Indices:
         """Pairs of triangles that may intersect, (k, 2), smaller index first, in lexicographic order.
 
-        Those of the options, and neighbors of theirs that touch at the start. Two triangles touch if they are apart,
-        but nearer than coordinates can keep them.
+        Those of the options, and other pairs of the same bodies that touch at the start. Two triangles touch if they
+        are apart, but nearer than coordinates can keep them. Neighbors of the former may then intersect; the others no
+        deeper than rounding.
         """
         return self._session.excluded
 

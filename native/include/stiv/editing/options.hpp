@@ -40,10 +40,10 @@ struct EditOptions {
   /// Response of each control, (m), or of each of its coordinates, (3 m): 0 pins. Empty: all 1. As in MetricOptions.
   Eigen::VectorXd weights;
   std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
-  /// Pairs of triangles that may intersect, with neighbors of theirs that touch (EditSession::excluded). No other pair
-  /// ever does, and the number of these that do never grows. Events that belong only to these pairs are ignored. The
-  /// common volume of two closed bodies, and the area of an open body inside a closed one, never exceed those of the
-  /// start. (mathematics.md, "Excluded pairs")
+  /// Pairs of triangles that may intersect, with others that touch (EditSession::excluded). No other pair ever does,
+  /// and the number of these that do, deeper than rounding, never grows. Events that belong only to these pairs are
+  /// ignored. The common volume of two closed bodies, and the area of an open body inside a closed one, never exceed
+  /// those of the start. (mathematics.md, "Excluded pairs")
   IndexPairs excluded;
   /// Pairs of bodies that may overlap, but no more than at the start: they can part in any direction. While a pair
   /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")

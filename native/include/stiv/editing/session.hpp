@@ -110,9 +110,9 @@ class EditSession {
   const Controls& controls() const;  ///< accepted, (m, 3)
   const Positions& surface() const;  ///< f(accepted), (N, 3)
   double separation() const;         ///< h in force
-  /// The pairs of triangles that may intersect: those of the options, and neighbors of theirs that touch at the start.
-  /// Two triangles touch if they are nearer than the least separation that survives storing. Sorted, smaller index
-  /// first.
+  /// The pairs of triangles that may intersect: those of the options, and other pairs of the same bodies that touch at
+  /// the start. Two triangles touch if they are apart, but nearer than storing can keep them. Neighbors of the former
+  /// may then intersect; the others no deeper than rounding. Sorted, smaller index first.
   const IndexPairs& excluded() const;
   /// Of the accepted surface; builds a tree at the first call.
   std::optional<NearestTriangles> least_distance(DistancePairs pairs = DistancePairs::between_bodies);
