@@ -291,6 +291,18 @@ def test_a_drag_of_a_body_under_clothes_restores_both() -> None:
     assert wide.value == 0 and np.array_equal(evaluated(shirt), before)
 
 
+def test_loose_edges_that_cut_their_own_mesh_are_left_out_and_counted() -> None:
+    sheet = add("Sheet", mesh("Sheet", [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [range(4)]))
+    sheet.data.vertices.add(2)
+    sheet.data.vertices[4].co, sheet.data.vertices[5].co = (0.4, 0.5, -0.5), (0.4, 0.5, 0.5)
+    sheet.data.edges.add(1)
+    sheet.data.edges[-1].vertices = (4, 5)
+    add_key(sheet, "Wide", lambda co: (co[0] * 2, co[1], co[2]))
+    report = morph(bpy.context, {"Sheet": {"Wide": 1.0}}, SETTINGS)
+    note = "Sheet: 1 loose edge or vertex cuts it and is not tested"
+    assert (report.status, report.start_notes) == ("reached", (note,))
+
+
 def test_seams_of_a_mesh_that_is_not_welded_stay_closed_or_are_named() -> None:
     """Faces beside a seam touch at the start. They are tested like neighbours unless a key moves the copies apart."""
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]

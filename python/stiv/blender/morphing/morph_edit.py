@@ -64,13 +64,15 @@ class MorphEdit:
             ends = [np.where(given, each, self.start) for each in (lower, upper)]
             self._jacobian = scene.simplify(ends, scene.jacobian())
             self._deformation = self._make_deformation(lower, upper)
+            loose = scene.leave_out_cutting_parts()
             self._session, excluded = _open_session(scene, self._deformation, _weights(scene, given, others_yield))
         except BaseException:
             scene.write(scene.start)
             raise
-        self.start_notes = intersection_notes(excluded, {each.owner.name for each in self.sliders})
-        self._excluded = excluded
-        self._verifier = Verifier(scene.assembly, self._session.is_step_free, settings.threads, excluded)
+        self._excluded = exclude_undecided(excluded, scene.assembly, self._session.excluded, ())
+        names = {each.owner.name for each in self.sliders}
+        self.start_notes = (*intersection_notes(excluded, names, self._excluded), *loose)
+        self._verifier = Verifier(scene.assembly, self._session.is_step_free, settings.threads, self._excluded)
         self._shown = scene.start
         self._lower, self._upper = lower, upper
         self._path: list[Floats] = []
@@ -109,9 +111,8 @@ class MorphEdit:
         """The message on faces at seams that the edit has torn, if they cut each other now; "" without any."""
         if not self._excluded.pairs:
             return ""
-        assembly = self._scene.assembly
-        excluded = exclude_undecided(self._excluded, assembly, self._session.excluded, ())
-        return torn_seam_note(assembly, excluded, self._session.surface, self._scene.settings.threads)
+        threads = self._scene.settings.threads
+        return torn_seam_note(self._scene.assembly, self._excluded, self._session.surface, threads)
 
     @property
     def has_moved_clothes(self) -> bool:

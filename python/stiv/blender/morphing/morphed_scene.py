@@ -17,6 +17,7 @@ from stiv.blender.morphing.key_sliders import KeySlider
 from stiv.blender.scene.arrays import Floats, Indices, diagonal_of
 from stiv.blender.scene.assembly import assemble, mesh_seams
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
+from stiv.blender.scene.loose_parts import find_cutting_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import guard_bent_quads
 from stiv.blender.settings import EditSettings
@@ -158,6 +159,13 @@ class MorphedScene:
         self.assembly = guard_bent_quads(assemble(meshes, mobility, (), ignored, seams), self.settings.threads)
         self._vertices = self._merge(seams)
         return np.asarray(jacobian[self.rows])
+
+    def leave_out_cutting_parts(self) -> tuple[str, ...]:
+        """Leave out the loose edges and vertices that cut their own object; returns notes on them."""
+        loose = find_cutting_parts(self.assembly, (), self.settings.threads)
+        notes = loose_part_notes(self.assembly, loose)
+        self.assembly = without_loose_parts(self.assembly, loose)
+        return notes
 
     def longest_motion(self, jacobian: Floats, change: Floats) -> float:
         """The longest motion of a vertex by a change of the values, (k,), in sizes of the moving surface."""

@@ -22,7 +22,7 @@ def find_face_pairs(
     """
     faces = stiv.find_intersections(q, assembly.surface, threads=threads) if intersecting is None else intersecting
     none = np.empty((0, 2), np.int32)
-    loose = _has_loose_elements(assembly.surface)
+    loose = has_loose_elements(assembly.surface)
     edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads) if loose else (none, none)
     counts = Counter(
         [
@@ -37,7 +37,7 @@ def find_face_pairs(
     return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
 
 
-def _has_loose_elements(surface: stiv.Surface) -> bool:
+def has_loose_elements(surface: stiv.Surface) -> bool:
     """Has a surface edges or vertices without triangles?"""
     used = np.zeros(surface.vertex_count, bool)
     used[surface.triangles] = True

@@ -11,6 +11,7 @@ import stiv
 from stiv.blender.scene.arrays import Flags, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element
+from stiv.blender.scene.face_pairs import has_loose_elements
 from stiv.blender.scene.message_fitting import fit_message
 
 
@@ -30,6 +31,8 @@ class LooseParts:
 def find_cutting_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
     """The loose edges and vertices that cut only faces of their own object, or of objects `together` with it."""
     surface = assembly.surface
+    if not has_loose_elements(surface):
+        return LooseParts(np.empty(0, np.int32), np.empty(0, np.int32))
     edges, vertices = stiv.find_loose_intersections(assembly.positions, surface, threads=threads)
     cut_edges = _cutting(edges, assembly.loose_edge, assembly, together)
     used = np.zeros(surface.vertex_count, np.bool_)
