@@ -25,7 +25,6 @@ from building import (
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene
-from stiv.blender.edit import increments
 from stiv.task import run
 
 DEFORM = EditSettings(object_response="deform")
@@ -55,36 +54,6 @@ def test_a_move_into_the_floor_stops_above_it(settings: EditSettings) -> None:
     assert edit.write().passed
     assert 0 < evaluated(cube)[:, 2].min() < 0.01
     assert check_scene(bpy.context).pairs == ()
-
-
-def drags_to(motion: np.ndarray, most_still: int, monkeypatch: pytest.MonkeyPatch) -> tuple[np.ndarray, int]:
-    """The moving surface after a typed value, and the number of solved increments, of which few may hold still."""
-    monkeypatch.setattr(increments, "MOST_STILL", most_still)
-    edit = begin(settings=EditSettings())
-    count, drag_steps = 0, edit.drag_steps
-
-    def counted(*given):
-        nonlocal count
-        count += 1
-        return drag_steps(*given)
-
-    monkeypatch.setattr(edit, "drag_steps", counted)
-    edit.apply(motion)
-    return edit.surface[edit._moving_vertices], count
-
-
-@pytest.mark.parametrize("half_width", [0.5, 40.0], ids=["narrow", "wide"])
-def test_a_typed_value_behind_a_wall_skips_increments_that_hold_still_and_ends_alike(
-    half_width: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    cube = add_cube("Cube")
-    add_cube("Wall", (2.0, 0.3, 0.1), scale=(0.2, half_width, half_width))
-    select(cube)
-    bpy.context.view_layer.update()
-    whole, all_increments = drags_to(shift(6), 10**6, monkeypatch)
-    found, few = drags_to(shift(6), 4, monkeypatch)
-    assert found == pytest.approx(whole, abs=1e-3)
-    assert few < all_increments / 2
 
 
 def test_a_time_budget_ends_a_typed_value_on_its_way() -> None:

@@ -18,6 +18,7 @@ import stiv
 from blend_fixtures.characters import make_character, select_bones
 from stiv.blender import BlenderEdit, EditSettings, Motion, UnsupportedStackError, WriteReport, check_scene
 from stiv.blender.controls import control_reading
+from stiv.blender.edit import increments
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 
 SETTINGS = EditSettings(separation=0.01)
@@ -79,6 +80,32 @@ def test_a_rotated_arm_stops_at_a_box_in_each_rotation_mode(mode: str) -> None:
     assert intersecting(body, box) == 0 and 0.005 < lowest(body) < 0.03
     back, report, _ = apply("rotate", turn(np.radians(-20), "Y", SHOULDER))
     assert back.status == "reached" and report.passed
+
+
+def typed(most_still: int, monkeypatch: pytest.MonkeyPatch) -> tuple[np.ndarray, int]:
+    """The body after a typed rotation onto the box, and how many increments are solved, if so many may hold still."""
+    monkeypatch.setattr(increments, "MOST_STILL", most_still)
+    _, body, _ = box_below_hand(rotation_mode="XYZ", lock_rotation=(False, True, True))
+    edit = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
+    count, drag_steps = 0, edit.drag_steps
+
+    def counted(*given: Any) -> Any:
+        nonlocal count
+        count += 1
+        return drag_steps(*given)
+
+    monkeypatch.setattr(edit, "drag_steps", counted)
+    edit.apply(Motion(turn(np.radians(150), "Y", SHOULDER), np.zeros(3)))
+    assert edit.write().passed and 0.005 < lowest(body) < 0.03
+    return evaluated(body), count
+
+
+def test_a_typed_pose_leaves_out_increments_that_contact_holds_still(monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, all_increments = typed(10**6, monkeypatch)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    found, few = typed(4, monkeypatch)
+    assert found == pytest.approx(whole, abs=1e-3)
+    assert few < all_increments / 2
 
 
 def test_goals_are_those_of_blender() -> None:

@@ -359,7 +359,8 @@ class BlenderEdit:
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
 
-        Where contact holds the selection for several increments, only the last one follows. A time budget of the
+        Where contact holds bones for several increments, only the last one follows: each takes long, and they never
+        go around an obstacle. A time budget of the
         settings limits the whole call; the result then has the status "budget".
 
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
@@ -374,9 +375,10 @@ class BlenderEdit:
     def _apply_increments(self, motion: Motion, path: Path | None) -> Steps[stiv.EditResult]:
         results: list[stiv.EditResult] = []
         increments = [*split_motion(motion, path, self.assembly.positions[self._moving_vertices])]
+        is_pose = any(each.posed is not None for each in self.control_sets)
         still, end = StillIncrements(), time.monotonic() + (self._settings.time_budget or np.inf)
         for number, increment in enumerate(increments, 1):
-            if still.are_many and number < len(increments):
+            if is_pose and still.are_many and number < len(increments):
                 continue
             yield (number - 1) / len(increments)
             results.append((yield from self._drag_increment(increment, still, end)))
