@@ -83,7 +83,10 @@ def test_a_rotated_arm_stops_at_a_box_in_each_rotation_mode(mode: str) -> None:
 
 
 def typed(most_still: int, monkeypatch: pytest.MonkeyPatch) -> tuple[np.ndarray, int]:
-    """The body after a typed rotation onto the box, and the number of increments solved, if at most `most_still` may hold still."""
+    """The body after a typed rotation onto the box, and the number of increments solved.
+
+    most_still: increments in a row that may hold the arm still before the others are left out.
+    """
     monkeypatch.setattr(increments, "MOST_STILL", most_still)
     _, body, _ = box_below_hand(rotation_mode="XYZ", lock_rotation=(False, True, True))
     edit = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")
