@@ -49,8 +49,8 @@ def test_a_drag_far_over_the_obstacle_ends_as_with_a_fixed_body() -> None:
     for tick in range(1, 41):
         goal = moved((0.3 * tick, 0.1 * tick, -0.03 * tick))
         result, expected = mine.drag(goal), theirs.drag(goal)
-        assert np.allclose(result.controls[0], expected.controls[0], atol=0.02)
-        assert result.energy == pytest.approx(expected.energy, rel=0.05, abs=1e-6)
+        assert np.allclose(result.controls[0], expected.controls[0], atol=0.05)  # one may lie on another facet
+        assert result.energy == pytest.approx(expected.energy, rel=0.02, abs=1e-6)
         for controls in result.path:
             after = stiv.rigid(BALL.vertices).surface(controls)
             assert check.is_free(whole(before), whole(after))
