@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "acceptance/clearance/triangle_distance.hpp"
+#include "acceptance/intersection/near_pairs.hpp"
 #include "editing/touching_pairs.hpp"
+#include "stiv/detection/distance.hpp"
 #include "stiv/error.hpp"
 
 namespace stiv {
@@ -44,11 +46,6 @@ struct PlacedTriangles {
     Eigen::AlignedBox3d box;
     for (const Index corner : corners(triangle)) box.extend(Vector3(q.row(corner)));
     return box;
-  }
-
-  bool share_a_corner(Index a, Index b) const {
-    const std::array<Index, 3> first = corners(a), second = corners(b);
-    return std::find_first_of(first.begin(), first.end(), second.begin(), second.end()) != first.end();
   }
 
   /// Whether two triangles are apart, but nearer than a distance.
@@ -103,7 +100,7 @@ void ExcludedPairs::add_touching() {
   near.erase(std::unique(near.begin(), near.end()), near.end());
   std::erase_if(near, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return contains(a, b) || placed.share_a_corner(a, b) || !placed.touch(a, b, least_);
+    return is_among(pairs_, a, b) || share_corner(placed.corners(a), placed.corners(b)) || !placed.touch(a, b, least_);
   });
   const auto given = static_cast<std::ptrdiff_t>(pairs_.size());
   pairs_.insert(pairs_.end(), near.begin(), near.end());
@@ -121,8 +118,6 @@ std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
   found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
-
-bool ExcludedPairs::contains(Index a, Index b) const { return is_among(pairs_, a, b); }
 
 void ExcludedPairs::find_others_that_touch(Execution& execution) {
   const IndexPairs found = find_touching(surface_, bodies_, start_, rounding(), execution);
@@ -154,7 +149,9 @@ bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index
   const std::vector<Index> first = triangles_with(begin, split),
                            second = triangles_with(split, begin + event.vertices.size());
   const auto touch_at = [&](const std::function<Vector3(Index)>& position) {
-    return primitive_distance(event, position) < rounding();
+    Quadruple<double> points;
+    std::transform(begin, begin + event.vertices.size(), points.begin(), position);
+    return witness<double>(event.kind, points).distance < rounding();
   };
   if (first.empty() || second.empty()) {  // a loose edge or vertex
     const std::pair<Index, Index> bodies = std::minmax(surface_->body_of(*begin), surface_->body_of(*split));
@@ -164,7 +161,7 @@ bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index
   bool touch = false;
   for (const Index a : first)
     for (const Index b : second) {
-      if (contains(a, b)) continue;
+      if (is_among(pairs_, a, b)) continue;
       if (!is_among(touching_, a, b)) return false;
       touch = true;
     }
@@ -181,7 +178,7 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
   std::erase_if(left, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return is_among(touching_, a, b) && intersection_depth(placed.corners(a), placed.corners(b), q) < rounding();
+    return is_among(touching_, a, b) && placed.depth(a, b) < rounding();
   });
   return left;
 }

@@ -57,7 +57,6 @@ class ExcludedPairs {
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(Execution& execution);
   IndexPairs bodies_of_pairs() const;
-  bool contains(Index a, Index b) const;
   bool covers(const Event& event, const std::function<Vector3(Index)>& end) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 

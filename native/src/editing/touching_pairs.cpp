@@ -2,7 +2,7 @@
 #include "editing/touching_pairs.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 #include <vector>
 
 #include "acceptance/clearance/triangle_distance.hpp"
@@ -44,19 +44,6 @@ double distance_apart(Corners a, Corners b, const PositionsView& q) {
   return std::min({to_corners, distance({v, a[0], a[0]}, {w, b[0], b[0]}), distance({w, a[0], a[0]}, {v, b[0], b[0]})});
 }
 
-/// The motion along an axis that parts two triangles; infinite if the axis has no direction.
-double parting_motion(const Vector3& axis, const std::array<Vector3, 3>& a, const std::array<Vector3, 3>& b) {
-  const double length = axis.norm();
-  if (!(length > 0)) return std::numeric_limits<double>::infinity();
-  const auto range = [&](const std::array<Vector3, 3>& triangle) {
-    const std::array<double, 3> along{axis.dot(triangle[0]), axis.dot(triangle[1]), axis.dot(triangle[2])};
-    return std::minmax({along[0], along[1], along[2]});
-  };
-  const auto [low_a, high_a] = range(a);
-  const auto [low_b, high_b] = range(b);
-  return std::max(0.0, std::min(high_a - low_b, high_b - low_a)) / length;
-}
-
 }  // namespace
 
 IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
@@ -75,36 +62,6 @@ IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const In
   for (std::size_t k = 0; k < near.size(); ++k)
     if (touch[k] != 0) found.push_back(near[k]);
   return found;
-}
-
-double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
-                          const PositionsView& q) {
-  const Vector3 origin = q.row(first[0]);  // rounding then scales with the pair, not with the scene
-  std::array<Vector3, 3> a, b, sides_of_a, sides_of_b;
-  for (std::size_t k = 0; k < 3; ++k) {
-    a[k] = q.row(first[k]).transpose() - origin;
-    b[k] = q.row(second[k]).transpose() - origin;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    sides_of_a[k] = a[(k + 1) % 3] - a[k];
-    sides_of_b[k] = b[(k + 1) % 3] - b[k];
-  }
-  const Vector3 normal_of_a = sides_of_a[0].cross(sides_of_a[1]), normal_of_b = sides_of_b[0].cross(sides_of_b[1]);
-  double depth = std::min(parting_motion(normal_of_a, a, b), parting_motion(normal_of_b, a, b));
-  for (std::size_t i = 0; i < 3; ++i) {
-    depth = std::min(depth, parting_motion(normal_of_a.cross(sides_of_a[i]), a, b));
-    depth = std::min(depth, parting_motion(normal_of_b.cross(sides_of_b[i]), a, b));
-    for (std::size_t j = 0; j < 3; ++j)
-      depth = std::min(depth, parting_motion(sides_of_a[i].cross(sides_of_b[j]), a, b));
-  }
-  return depth;
-}
-
-double primitive_distance(const Event& event, const std::function<Vector3(Index)>& position) {
-  Positions corners(4, 3);
-  for (Index k = 0; k < 4; ++k) corners.row(k) = position(event.vertices[at(k)]).transpose();
-  if (event.kind == EventKind::vertex_face) return triangle_distance({0, 0, 0}, {1, 2, 3}, corners).distance;
-  return triangle_distance({0, 1, 1}, {2, 3, 3}, corners).distance;
 }
 
 }  // namespace stiv

@@ -48,7 +48,7 @@ std::size_t count_different(const IndexPairs& pairs) {
   return firsts.size();
 }
 
-// "3 pairs of faces cut each other, and 1 loose edge or vertex cuts a face"; leaves out what does not occur.
+/// "3 pairs of faces cut each other, and 1 loose edge or vertex cuts a face"; leaves out what does not occur.
 std::string counts(const StaticPairs& found) {
   const std::size_t faces = found.faces.size();
   const std::size_t loose = count_different(found.loose_edges) + count_different(found.loose_vertices);

@@ -5,6 +5,8 @@
 
 #include <random>
 
+#include "acceptance/clearance/triangle_distance.hpp"
+
 using namespace stiv;
 
 namespace {

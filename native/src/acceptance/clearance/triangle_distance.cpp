@@ -31,6 +31,16 @@ double gap_along(const Vector3& direction, const Corners& a, const Corners& b) {
   return (low - high) / length;
 }
 
+/// The motion along an axis that parts two triangles; infinite if the axis has no direction.
+double parting_motion(const Vector3& axis, const Corners& a, const Corners& b) {
+  if (!(axis.norm() > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, -std::max(gap_along(axis, a, b), gap_along(axis, b, a)));
+}
+
+Corners sides_of(const Corners& triangle) {
+  return {triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
+}
+
 }  // namespace
 
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
@@ -70,6 +80,22 @@ NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std:
     }
   }
   return nearest;
+}
+
+double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                          const PositionsView& q) {
+  const Vector3 origin = q.row(first[0]);
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  double depth = std::numeric_limits<double>::infinity();
+  const auto part_along = [&](const Vector3& axis) { depth = std::min(depth, parting_motion(axis, a, b)); };
+  for (const Corners& sides : {sides_of(a), sides_of(b)}) {
+    const Vector3 normal = sides[0].cross(sides[1]);
+    part_along(normal);
+    for (const Vector3& side : sides) part_along(normal.cross(side));
+  }
+  for (const Vector3& side : sides_of(a))
+    for (const Vector3& other : sides_of(b)) part_along(side.cross(other));
+  return depth;
 }
 
 }  // namespace stiv

@@ -17,4 +17,9 @@ NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std:
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                const PositionsView& q);
 
+/// Bound of the depth to which two triangles intersect: the shortest motion that parts them along one of their
+/// separating axes. Corners that they share do not count as an intersection.
+double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                          const PositionsView& q);
+
 }  // namespace stiv

@@ -71,11 +71,7 @@ bool DeviationTest::Implementation::are_stars_free(const PositionsView& q, const
 }
 
 bool DeviationTest::Implementation::is_star_free(const PositionsView& q, Index vertex) const {
-  const std::span<const Index> link = stars_->link(vertex);
-  for (std::size_t a = 1; a < link.size(); ++a)
-    for (std::size_t b = 1; b < a; ++b)
-      if (intersect(*surface_, {{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}}, q)) return false;
-  return true;
+  return !stars_->any_pair(vertex, [&](const CornerPair& pair) { return intersect(*surface_, pair, q); });
 }
 
 bool DeviationTest::Implementation::are_pairs_free(const PositionsView& q, const PackedPoints& points,

@@ -154,7 +154,11 @@ class IntersectionTest::Implementation {
     update({&triangles_}, q, {}, execution);
     std::vector<CornerPair> listed;
     find_among(triangles_, q, listed, execution);
-    for (const Index vertex : stars_->find_open(proofs_, {})) append_star(vertex, listed);
+    for (const Index vertex : stars_->find_open(proofs_, {}))  // searches leave out those that are free at q
+      stars_->any_pair(vertex, [&](const CornerPair& pair) {
+        listed.push_back(pair);
+        return false;
+      });
     return numbered(listed);
   }
 
@@ -209,14 +213,6 @@ class IntersectionTest::Implementation {
   IndexPairs numbered(IndexPairs pairs) const {
     for (auto& [vertex, triangle] : pairs) vertex = loose_vertices_.corners(vertex)[0];
     return pairs;
-  }
-
-  /// Appends the pairs of triangles around a vertex with a link, of which searches leave out those that are free.
-  void append_star(Index vertex, std::vector<CornerPair>& pairs) const {
-    const std::span<const Index> link = stars_->link(vertex);
-    for (std::size_t a = 1; a < link.size(); ++a)
-      for (std::size_t b = 1; b < a; ++b)
-        pairs.push_back({{vertex, link[a - 1], link[a]}, {vertex, link[b - 1], link[b]}});
   }
 
   /// Numbers of the triangles of pairs, sorted.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "acceptance/intersection/near_pairs.hpp"
 #include "acceptance/intersection/placed_vertices.hpp"
 
 namespace stiv {
@@ -43,6 +44,16 @@ class Stars {
   /// its first. Empty unless the triangles are a single fan of two to StarBlock::most_triangles triangles with three
   /// different corners each.
   std::span<const Index> link(Index vertex) const;
+
+  /// Does `holds` return true for a pair of triangles in the star of a vertex with a link?
+  template <class Predicate>
+  bool any_pair(Index vertex, const Predicate& holds) const {
+    const std::span<const Index> around = link(vertex);
+    for (std::size_t a = 1; a < around.size(); ++a)
+      for (std::size_t b = 1; b < a; ++b)
+        if (holds(CornerPair{{vertex, around[a - 1], around[a]}, {vertex, around[b - 1], around[b]}})) return true;
+    return false;
+  }
 
  private:
   /// Sets `proof` for each of some stars that is proven, unless `skips(vertex)`.
