@@ -14,6 +14,7 @@ import stiv
 from stiv import InputError
 from stiv.blender.animation.clip import Clip
 from stiv.blender.animation.clip_solving import ClipSolver
+from stiv.blender.controls.joined_seams import selection_weights
 from stiv.blender.scene.animation_curves import own_curves
 from stiv.blender.scene.arrays import Floats, Indices, Singles, read_collection
 from stiv.blender.scene.references import ObjectReference
@@ -107,12 +108,7 @@ class CorrectiveSolver:
         yielding = np.zeros(count, bool)
         for own in meshes.values():
             yielding[own] = True
-        matrix = stiv.Weights(
-            np.arange(len(rows) + 1, dtype=np.int32),
-            leaders[rows].astype(np.int32),
-            np.ones(len(rows)),
-            (len(rows), count),
-        )
+        matrix = selection_weights(leaders[rows].astype(np.int32), count)
         separation = max(self._solver.settings.separation, CLEARANCE * self._clip.size)
         options = stiv.EditOptions(weights=yielding.astype(float), separation=separation)
         session = stiv.EditSession(self._solver.assembly.surface, stiv.linear(matrix), goals[0], options)

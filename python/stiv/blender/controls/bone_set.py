@@ -11,7 +11,7 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels, MirroredBone
-from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, Writer
+from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, UnlimitedGoal, Writer
 from stiv.blender.controls.garments import Garment, stacked_weights
 from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
@@ -164,7 +164,7 @@ def _weights(bone: BoneChannels, kind: str, settings: EditSettings) -> Floats:
 
 
 @dataclass(frozen=True)
-class BoneGoal:
+class BoneGoal(UnlimitedGoal):
     """How the free channels of bones follow a motion of the selection."""
 
     scalars: BoneScalars
@@ -181,18 +181,6 @@ class BoneGoal:
             for bone, before in self.scalars.channels(last[:, 0])
         ]
         return as_controls(self.scalars.of(found))
-
-    def limits(self, motion: Motion) -> tuple[object, ...]:
-        """Nothing depends on the motion."""
-        return ()
-
-    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
-        """The control set itself."""
-        return control_set
-
-    def turned(self, controls: Floats, goal: Floats) -> float:
-        """0: the rotation of a bone is part of its goal."""
-        return 0.0
 
 
 @dataclass(frozen=True)
@@ -229,7 +217,7 @@ def _insert(bone: bpy.types.PoseBone, names: Collection[str], options: set[str])
 
 
 @dataclass(frozen=True)
-class DressedGoal:
+class DressedGoal(UnlimitedGoal):
     """The goal of bones, (k, 3), and garments, which rest."""
 
     bones: GoalRule
@@ -244,18 +232,6 @@ class DressedGoal:
         """Goal of the controls, (m, 3)."""
         bones = self.bones.goal(controls[: self.count], last[: self.count], motion)
         return np.concatenate([bones, controls[self.count :]])
-
-    def limits(self, motion: Motion) -> tuple[object, ...]:
-        """Nothing depends on the motion."""
-        return ()
-
-    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
-        """The control set itself."""
-        return control_set
-
-    def turned(self, controls: Floats, goal: Floats) -> float:
-        """0: the rotation of a bone is part of its goal."""
-        return 0.0
 
 
 @dataclass(frozen=True)

@@ -77,6 +77,22 @@ class GoalRule(Protocol):
         """Angle in radians by which moving controls, (m, 3), rotate though their goal does not; 0 for points."""
 
 
+class UnlimitedGoal:
+    """Base of rules whose control sets respond alike in all motions, and which contact does not turn."""
+
+    def limits(self, motion: Motion) -> tuple[object, ...]:
+        """The motion limits nothing."""
+        return ()
+
+    def limited(self, control_set: "ControlSet", motion: Motion, weight: float) -> "ControlSet":
+        """The control set itself."""
+        return control_set
+
+    def turned(self, controls: Floats, goal: Floats) -> float:
+        """0: nothing turns that does not belong to the goal."""
+        return 0.0
+
+
 @dataclass(frozen=True)
 class ControlSet:
     """The controls of one cage, mesh with handles, lattice or group of rigid objects.

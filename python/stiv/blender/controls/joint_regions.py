@@ -172,9 +172,12 @@ def _folds(
     corners = np.concatenate([each[mesh.triangles] for each, mesh in zip(rows, meshes, strict=True)])
     part = {face: mesh.part for mesh in meshes for face in mesh.faces.tolist()}
     pairs = self_cuts(points, corners, np.concatenate([mesh.faces for mesh in meshes]), threads)
-    return {
-        pair for pair in pairs for a, b in [[part[face] for face in pair]] if not untested.isdisjoint({(a, b), (b, a)})
-    }
+
+    def is_untested(pair: frozenset[int]) -> bool:
+        a, b = (part[face] for face in pair)
+        return (a, b) in untested or (b, a) in untested
+
+    return set(filter(is_untested, pairs))
 
 
 def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 
 import stiv
 from stiv import InputError
-from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.control_set import ControlSet, Participant, UnlimitedGoal
 from stiv.blender.controls.editable import check_placement, check_unconstrained
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.object_transform import are_parallel, read_transform
@@ -89,7 +89,7 @@ def attach_passengers(groups: list[RigidGroup], shown: Collection[str]) -> tuple
 
 
 @dataclass(frozen=True)
-class PassengerGoal:
+class PassengerGoal(UnlimitedGoal):
     """Takes a group without a surface to its goal, whatever contact does to the others."""
 
     rule: PlacementGoal
@@ -102,18 +102,6 @@ class PassengerGoal:
     def goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
         """Goal of centre and second row, (2, 3)."""
         return self.rule.goal(controls, last, motion)
-
-    def limits(self, motion: Motion) -> tuple[object, ...]:
-        """Nothing limits the group."""
-        return ()
-
-    def limited(self, control_set: ControlSet, motion: Motion, weight: float) -> ControlSet:
-        """The same control set."""
-        return control_set
-
-    def turned(self, controls: Floats, goal: Floats) -> float:
-        """0: contact turns no group without a surface."""
-        return 0.0
 
 
 def make_passenger_set(group: RigidGroup, settings: EditSettings, kind: str) -> ControlSet:

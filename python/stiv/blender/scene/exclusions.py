@@ -33,14 +33,15 @@ def exclude_undecided(
 ) -> Exclusions:
     """Also exclude the pairs of triangles, (k, 2), that intersect or touch and need no decision.
 
-    These are pairs within one object, and pairs of objects that move `together`.
+    together: names of objects, see `needs_no_decision`.
     """
-    chosen = frozenset(
-        _key(a, b)
-        for a, b in assembly.face_pairs(found)
-        if a.object == b.object or (a.object in together and b.object in together)
-    )
+    chosen = frozenset(_key(a, b) for a, b in assembly.face_pairs(found) if needs_no_decision(a, b, together))
     return Exclusions(excluded.pairs | chosen, excluded.shapes)
+
+
+def needs_no_decision(first: Element, second: Element, together: Collection[str]) -> bool:
+    """May two elements intersect at the start: those of one object, or of objects that move `together`?"""
+    return first.object == second.object or (first.object in together and second.object in together)
 
 
 def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:

@@ -11,6 +11,7 @@ import stiv
 from stiv.blender.scene.arrays import Flags, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element
+from stiv.blender.scene.exclusions import needs_no_decision
 from stiv.blender.scene.face_pairs import has_loose_elements
 from stiv.blender.scene.message_fitting import fit_message
 
@@ -29,7 +30,7 @@ class LooseParts:
 
 
 def find_cutting_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
-    """The loose edges and vertices that cut only faces of their own object, or of objects `together` with it."""
+    """The loose edges and vertices that cut only faces which need no decision: see `needs_no_decision`."""
     surface = assembly.surface
     if not has_loose_elements(surface):
         return LooseParts(np.empty(0, np.int32), np.empty(0, np.int32))
@@ -44,13 +45,13 @@ def find_cutting_parts(assembly: Assembly, together: Collection[str], threads: i
 def _cutting(
     pairs: Indices, element: Callable[[int], Element], assembly: Assembly, together: Collection[str]
 ) -> Indices:
-    """The first numbers of pairs with triangles, (k, 2), if all of them are within one object or objects together."""
-    within: dict[int, bool] = {}
-    for number, triangle in pairs.tolist():
-        name, other = element(number).object, assembly.face(triangle).object
-        needs_no_decision = name == other or (name in together and other in together)
-        within[number] = within.get(number, True) and needs_no_decision
-    return np.array(sorted(number for number, is_own in within.items() if is_own), np.int32)
+    """The first numbers of pairs with triangles, (k, 2), if none of their pairs needs a decision."""
+    undecided = {
+        number
+        for number, triangle in pairs.tolist()
+        if not needs_no_decision(element(number), assembly.face(triangle), together)
+    }
+    return np.setdiff1d(pairs[:, 0], np.array(sorted(undecided), np.int32))
 
 
 def without_loose_parts(assembly: Assembly, parts: LooseParts) -> Assembly:
