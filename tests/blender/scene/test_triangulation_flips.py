@@ -11,9 +11,7 @@ import pytest
 from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
-from stiv.blender.edit import solver as solver_module
-from stiv.blender.edit import state_writer as writer_module
+from stiv.blender import BlenderEdit, EditSettings, check_scene, deadlines, read_surface
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import read_scene
@@ -114,8 +112,7 @@ def test_a_drag_repeats_its_solves_only_within_its_time(monkeypatch: pytest.Monk
     for height in np.linspace(0.1, 2, 20):
         edit.drag(shift(z=height))
     solved, solve, clock = [], EditSolver.solve, SimpleNamespace(monotonic=count(0, 100).__next__)
-    for module in (solver_module, writer_module):
-        monkeypatch.setattr(module, "time", clock)
+    monkeypatch.setattr(deadlines, "time", clock)
     monkeypatch.setattr(EditSolver, "solve", lambda solver, goal: solved.append(goal) or solve(solver, goal))
     report = edit.write()
     assert report.passed and report.result is not None and 0 < len(solved) <= 2

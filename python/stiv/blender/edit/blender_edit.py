@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -20,6 +19,7 @@ from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
+from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.increments import Path, StillIncrements, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
@@ -37,8 +37,6 @@ from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
-
-LEAST_TIME = 1e-3  # seconds of an increment after the time budget: it ends at once, and says so
 
 
 class BlenderEdit:
@@ -376,7 +374,7 @@ class BlenderEdit:
         results: list[stiv.EditResult] = []
         increments = [*split_motion(motion, path, self.assembly.positions[self._moving_vertices])]
         is_pose = any(each.posed is not None for each in self.control_sets)
-        still, end = StillIncrements(), time.monotonic() + (self._settings.time_budget or np.inf)
+        still, end = StillIncrements(), deadline_after(self._settings.time_budget)
         for number, increment in enumerate(increments, 1):
             if is_pose and still.are_many and number < len(increments):
                 continue
@@ -387,15 +385,14 @@ class BlenderEdit:
             if _only_goes_deeper(results[-1]):
                 self._goal = self._goal_of(motion)
                 return merge_results(results)
-            if time.monotonic() > end and (number < len(increments) or results[-1].status != "reached"):
+            if is_over(end) and (number < len(increments) or results[-1].status != "reached"):
                 return replace(merge_results(results), status="budget")
         return merge_results([*results, (yield from self.settle_steps())])
 
     def _drag_increment(self, increment: Motion, still: StillIncrements, end: float) -> Steps[stiv.EditResult]:
-        """Steps of one increment, until `end`, a time of the monotonic clock; infinite: any."""
+        """Steps of one increment, until the deadline `end`."""
         controls, goal = self.controls, self._goal
-        left = None if end == np.inf else max(end - time.monotonic(), LEAST_TIME)
-        result = yield from self.drag_steps(increment, left)
+        result = yield from self.drag_steps(increment, time_left(end) or None)
         still.add(self.controls - controls, self._goal - goal)
         return result
 

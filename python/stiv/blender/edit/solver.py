@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The session of an edit with its history; opened again when flipped triangles have to stay free of intersections."""
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
@@ -9,6 +8,7 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.deadlines import is_over
 from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
 from stiv.blender.edit.sessions import (
     axes_of_all,
@@ -150,7 +150,7 @@ class EditSolver:
 
     def retry_with(self, flips: Sequence[FaceTriangles], end: float) -> Steps[bool]:
         """Steps that add flipped triangles, go back to the last state that is free with them, and repeat the later
-        calls from there; after `end`, a time of the monotonic clock, only the last drag.
+        calls from there; after the deadline `end`, only the last drag.
 
         They return False, with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
@@ -171,7 +171,7 @@ class EditSolver:
         calls = self.trail.truncate_at(state)
         last = max((number for number, call in enumerate(calls) if call.goal is not None), default=0)
         for number, call in enumerate(calls):
-            if number == last or time.monotonic() < end:
+            if number == last or not is_over(end):
                 yield from self.solve(call.goal)
         return True
 

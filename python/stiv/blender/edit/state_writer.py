@@ -2,7 +2,6 @@
 """Writes accepted states into Blender, reads the evaluation back, and tests it."""
 
 import os
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -12,6 +11,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.deadlines import deadline_after, is_over
 from stiv.blender.edit.results import merge_results
 from stiv.blender.edit.sessions import stack_controls, write_controls
 from stiv.blender.edit.solver import EditSolver
@@ -146,9 +146,9 @@ class StateWriter:
         """
         verification = self._write_session()
         solved_again = False
-        end = time.monotonic() + (self._settings.time_budget or np.inf)
+        end = deadline_after(self._settings.time_budget)
         for _ in range(MAX_FLIP_RETRIES):
-            if verification.passed or (solved_again and time.monotonic() > end):
+            if verification.passed or (solved_again and is_over(end)):
                 break
             self.write(self._solver.trail.written)
             if not (yield from self._solver.retry_with(verification.flips, end)):

@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import stiv
+from stiv.blender.deadlines import deadline_after, is_over
 from stiv.task import Steps
 from stiv.task import run as run_steps
 
@@ -47,7 +47,7 @@ class Watch:
     def __init__(self, progress: Progress | None, time_budget: float) -> None:
         """Start the clock. time_budget: seconds, 0 for no limit."""
         self._progress = progress
-        self._end = time.monotonic() + time_budget if time_budget > 0 else float("inf")
+        self._end = deadline_after(time_budget)
         self._phase, self._fraction = "", 0.0
 
     def at(self, phase: str, fraction: float) -> Steps[None]:
@@ -62,7 +62,7 @@ class Watch:
             self._progress(self._phase, self._fraction)
         if (yield None):
             raise Stopped("cancelled")
-        if time.monotonic() > self._end:
+        if is_over(self._end):
             raise Stopped("budget")
 
 

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import bpy
 
 import stiv
+from stiv.blender.deadlines import deadline_after, time_left
 from stiv.blender.repair.reshaping import (
     MAX_FLIP_RETRIES,
     ReshapeReport,
@@ -28,7 +28,6 @@ OUT_OF_TIME_REASONS = {  # by status
     "repaired": "time limit reached; raise it to come closer",
     "budget": "raise the time limit, or repair fewer objects at once",
 }
-LEAST_TIME = 1e-3  # seconds of a solve after the time limit: it ends at once, and says so
 
 
 @dataclass(frozen=True)
@@ -61,8 +60,7 @@ class BlenderRepair:
         self._before = find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads)
         self._result: stiv.RepairResult | None = None
         self._attempts = 0
-        budget = settings.edit.time_budget
-        self._end = time.monotonic() + budget if budget > 0 else float("inf")
+        self._end = deadline_after(settings.edit.time_budget)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: RepairSettings | None = None) -> BlenderRepair:
@@ -118,10 +116,7 @@ class BlenderRepair:
 
     def _edit_options(self) -> stiv.EditOptions:
         """The options of the expansion, with the time that is left."""
-        options = self._snapshot.edit_options()
-        if self._end == float("inf"):
-            return options
-        return replace(options, time_budget=max(self._end - time.monotonic(), LEAST_TIME))
+        return replace(self._snapshot.edit_options(), time_budget=time_left(self._end))
 
     def restore(self) -> None:
         """Restore everything exactly."""
