@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Collection
 from typing import Any
 
 import bpy
+from bpy.props import FloatProperty
 
 from .. import stiv_blender
 from ..native_module import Mixin
@@ -15,6 +17,19 @@ from . import running, window_io
 from .reports import report_error
 
 TICK = 0.05  # seconds between two looks at the task
+
+
+def TimeLimitProperty(description: str, options: Collection[str] = ("ANIMATABLE",)) -> object:  # noqa: N802 (as Blender's own)
+    """The time limit of an operator, in seconds."""
+    return FloatProperty(
+        name="Time Limit",
+        description=description,
+        subtype="TIME_ABSOLUTE",
+        unit="TIME_ABSOLUTE",
+        default=120.0,
+        min=0.0,
+        options=set(options),
+    )
 
 
 class TaskOperator(Mixin):

@@ -7,13 +7,13 @@ import json
 from dataclasses import asdict
 
 import bpy
-from bpy.props import FloatProperty
 
 from ... import stiv_blender
 from ...intersection_texts import as_message
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..repair.reshape import ReshapeOperator
+from ..task_operator import TimeLimitProperty
 
 NAMED = 2  # objects that a message names
 
@@ -43,14 +43,7 @@ class LayoutOperator(ReshapeOperator):
 
     step_seconds = 0.04  # many short steps, a few of them jobs
 
-    time_limit: FloatProperty(
-        name="Time Limit",
-        description="Stop after this time with nothing changed; 0 for no limit",
-        subtype="TIME_ABSOLUTE",
-        unit="TIME_ABSOLUTE",
-        default=120.0,
-        min=0.0,
-    )
+    time_limit: TimeLimitProperty(description="Stop after this time with nothing changed; 0 for no limit")
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:

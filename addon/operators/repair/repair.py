@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, FloatProperty
 
 from ... import stiv_blender
 from ...scene.edit_settings import edit_settings
+from ..task_operator import TimeLimitProperty
 from .reshape import ReshapeOperator
 
 
@@ -26,14 +27,7 @@ class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
         precision=3,
     )
     weld: BoolProperty(name="Weld", description="Merge coincident vertices first", default=False)
-    time_limit: FloatProperty(
-        name="Time Limit",
-        description="Take the best result within this time; 0 for no limit",
-        subtype="TIME_ABSOLUTE",
-        unit="TIME_ABSOLUTE",
-        default=120.0,
-        min=0.0,
-    )
+    time_limit: TimeLimitProperty(description="Take the best result within this time; 0 for no limit")
 
     def settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
         """The settings of the scene, with the time limit."""

@@ -52,8 +52,8 @@ def set_value(self: bpy.types.PropertyGroup, value: float) -> None:
         context.window_manager.stiv_check.summary = error_text(error)
         return
     edit.insert_keyframes(context)
-    if edit.torn_seam_note:
-        context.window_manager.stiv_check.summary = translate_error(edit.torn_seam_note)
+    if note := edit.torn_seam_note:
+        context.window_manager.stiv_check.summary = translate_error(note)
     _dragged = _Dragged(ob.name, ob.active_shape_key.name, edit, time.monotonic())
 
 

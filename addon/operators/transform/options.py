@@ -17,6 +17,7 @@ from bpy.props import (
 from ... import stiv_blender
 from ...modal.proportional import FALLOFFS, Proportional
 from ...modal.request import Request
+from ..task_operator import TimeLimitProperty
 from .constraint import Constraint
 
 OF_SCENE = "SCENE"
@@ -75,14 +76,8 @@ class TransformOptions:
     responders: EnumProperty(name="Yields", items=RESPONDERS, default=OF_SCENE, options={"SKIP_SAVE"})
     interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=OF_SCENE, options={"SKIP_SAVE"})
     response: EnumProperty(name="Response", items=RESPONSES, default=OF_SCENE, options={"SKIP_SAVE"})
-    time_limit: FloatProperty(
-        name="Time Limit",
-        description="Take the best result within this time; 0 for no limit",
-        subtype="TIME_ABSOLUTE",
-        unit="TIME_ABSOLUTE",
-        default=120.0,
-        min=0.0,
-        options={"HIDDEN", "SKIP_SAVE"},
+    time_limit: TimeLimitProperty(
+        description="Take the best result within this time; 0 for no limit", options={"HIDDEN", "SKIP_SAVE"}
     )
     outcome: IntProperty(options={"HIDDEN", "SKIP_SAVE"})
 
