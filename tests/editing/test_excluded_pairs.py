@@ -202,3 +202,18 @@ def test_faces_that_touch_are_not_pressed_through_each_other(seed: int) -> None:
         assert all(parting_motion(*q[surface.triangles[list(pair)]]) < 1e-5 for pair in new)
         upper, lower = q[patch].mean(axis=0), q[:81][np.linalg.norm(q[:81] - q[patch].mean(axis=0), axis=1) < 0.6]
         assert (upper - lower.mean(axis=0)) @ normal > -0.02  # bent, but not below
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_faces_that_touch_are_the_same_beside_a_distant_body(seed: int) -> None:
+    """Rounding decides which slivers intersect, so they must be examined where they are stored."""
+    height = np.sort(np.random.default_rng(seed).uniform(0, 2, 9))
+    line = np.column_stack([33.80755 + 2.1e-8 * height, -13.2 + 1e-8 * height, height])
+    fan = np.array([(0, k, k + 1) for k in range(1, 8)])
+    alone = stiv.EditSession(fan, stiv.identity(9), line, stiv.EditOptions(exclude="intersecting"))
+    distant = np.vstack([line, np.eye(3) + 100.3])
+    triangles, owner = np.vstack([fan, [(9, 10, 11)]]), np.repeat([0, 1], [9, 3])
+    bodies = [stiv.Body("fan"), stiv.Body("distant", "fixed")]
+    surface = stiv.Surface(triangles, 12, vertex_body=owner, bodies=bodies)
+    both = stiv.EditSession(surface, stiv.identity(12), distant, stiv.EditOptions(exclude="intersecting"))
+    assert both.excluded.tolist() == alone.excluded.tolist()

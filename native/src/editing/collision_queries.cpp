@@ -37,6 +37,14 @@ bool has_deviation_tests(const EditContext& context) {
   return context.obstacles().rows() == 0 && context.options().excluded.empty() && context.options().overlapping.empty();
 }
 
+/// @param rows of the scene
+ExcludedPairs excluded_pairs(const EditContext& context, const Controls& start, SceneRows& rows, Execution& execution) {
+  const IndexPairs& given = context.options().excluded;
+  if (given.empty()) return {context.shared_surface(), {}, Positions(), context.least_separation(), execution};
+  const Positions surface = context.surface_at(start, execution);
+  return {context.shared_surface(), given, rows.with_rest(surface), context.least_separation(), execution};
+}
+
 }  // namespace
 
 CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const EditContext& context)
@@ -50,15 +58,14 @@ CollisionQueries::Guard::Guard(std::shared_ptr<const Surface> guarded, const Edi
     round_detector.emplace(surface, DetectorOptions{options.broad_phase, options.narrow_phase});
 }
 
-CollisionQueries::CollisionQueries(const EditContext& context, Execution& execution)
+CollisionQueries::CollisionQueries(const EditContext& context, const Controls& start, Execution& execution)
     : context_(context),
       start_(context.obstacles()),
       end_(context.obstacles()),
       centred_start_(context.centred_obstacles()),
       centred_end_(context.centred_obstacles()),
       guard_(std::make_unique<Guard>(context.shared_surface(), context)),
-      excluded_(context.shared_surface(), context.options().excluded, *context.proximity().reference,
-                context.least_separation(), execution),
+      excluded_(excluded_pairs(context, start, start_, execution)),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
   if (!excluded_.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());
@@ -161,7 +168,7 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Candidate
   {
     const ScopedTimer timer(execution.timings.detection);
     events = guard_->cache.find(place, context_.round_proximity(), execution);
-    excluded_.remove_from(events, [&](Index vertex) -> Vector3 {
+    excluded_.remove_from(events, *context_.proximity().reference, [&](Index vertex) -> Vector3 {
       const auto own = static_cast<Index>(to.surface.rows());
       if (vertex < own) return to.surface.row(vertex);
       return context_.obstacles().row(vertex - own);
@@ -186,7 +193,9 @@ std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, co
   std::optional<Events> events = limit == PairLimit::ignored
                                      ? detector.find(from, to, proximity, execution)
                                      : detector.find_within_pair_limit(from, to, proximity, execution);
-  if (events) excluded_.remove_from(*events, [&](Index vertex) -> Vector3 { return to.row(vertex); });
+  if (events)
+    excluded_.remove_from(*events, *context_.proximity().reference,
+                          [&](Index vertex) -> Vector3 { return to.row(vertex); });
   return events;
 }
 

@@ -26,7 +26,8 @@ enum class CandidateRows { placed, to_be_placed };
 class CollisionQueries {
  public:
   /// The context must outlive the queries.
-  CollisionQueries(const EditContext& context, Execution& execution);
+  /// @param start controls of the session's start, at which excluded pairs are examined
+  CollisionQueries(const EditContext& context, const Controls& start, Execution& execution);
   CollisionQueries(const CollisionQueries&) = delete;
   CollisionQueries& operator=(const CollisionQueries&) = delete;
 

@@ -64,7 +64,6 @@ struct PlacedTriangles {
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
                              const PositionsView& start, double least, Execution& execution)
     : surface_(std::move(surface)),
-      start_(start),
       least_(least),
       pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
   if (pairs_.empty()) return;
@@ -76,16 +75,16 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
-  const PlacedTriangles placed{triangles, start_};
+  const PlacedTriangles placed{triangles, start};
   for (const auto& [a, b] : pairs_)
     if (placed.intersect(a, b)) (placed.depth(a, b) < rounding() ? shallow_ : deep_).emplace_back(a, b);
   bodies_ = bodies_of_pairs();
-  add_touching();
-  find_others_that_touch(execution);
+  add_touching(start);
+  find_others_that_touch(start, execution);
 }
 
-void ExcludedPairs::add_touching() {
-  const PlacedTriangles placed{surface_->triangles(), start_};
+void ExcludedPairs::add_touching(const PositionsView& start) {
+  const PlacedTriangles placed{surface_->triangles(), start};
   const double reach = least_ * least_;
   IndexPairs near;
   for (const auto& [a, b] : pairs_) {
@@ -119,8 +118,8 @@ std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
   return found;
 }
 
-void ExcludedPairs::find_others_that_touch(Execution& execution) {
-  const IndexPairs found = find_touching(surface_, bodies_, start_, rounding(), execution);
+void ExcludedPairs::find_others_that_touch(const PositionsView& start, Execution& execution) {
+  const IndexPairs found = find_touching(surface_, bodies_, start, rounding(), execution);
   std::set_difference(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(touching_));
   std::merge(pairs_.begin(), pairs_.end(), touching_.begin(), touching_.end(), std::back_inserter(all_));
 }
@@ -144,7 +143,8 @@ std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index
   return common;
 }
 
-bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index)>& end) const {
+bool ExcludedPairs::covers(const Event& event, const PositionsView& start,
+                           const std::function<Vector3(Index)>& end) const {
   const Index *const begin = event.vertices.data(), *const split = begin + first_side_size(event.kind);
   const std::vector<Index> first = triangles_with(begin, split),
                            second = triangles_with(split, begin + event.vertices.size());
@@ -156,7 +156,7 @@ bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index
   if (first.empty() || second.empty()) {  // a loose edge or vertex
     const std::pair<Index, Index> bodies = std::minmax(surface_->body_of(*begin), surface_->body_of(*split));
     return std::binary_search(bodies_.begin(), bodies_.end(), bodies) &&
-           touch_at([&](Index vertex) -> Vector3 { return start_.row(vertex); }) && touch_at(end);
+           touch_at([&](Index vertex) -> Vector3 { return start.row(vertex); }) && touch_at(end);
   }
   bool touch = false;
   for (const Index a : first)
@@ -168,8 +168,9 @@ bool ExcludedPairs::covers(const Event& event, const std::function<Vector3(Index
   return !touch || touch_at(end);
 }
 
-void ExcludedPairs::remove_from(Events& events, const std::function<Vector3(Index)>& end) const {
-  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, end); });
+void ExcludedPairs::remove_from(Events& events, const PositionsView& start,
+                                const std::function<Vector3(Index)>& end) const {
+  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, start, end); });
 }
 
 IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q) const {

@@ -27,7 +27,8 @@ class ExcludedPairs {
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
   /// storing. Where a curve of intersection passes an edge so closely, it cannot be kept on its side of the edge. Only
   /// neighbors of the triangles of a given pair may intersect deeper. No pair that intersects at the start is added.
-  /// @param start of all vertices; must outlive this
+  /// @param start of all vertices, as stored: rounding decides whether faces that touch intersect, so positions that
+  /// are moved to another origin would count as others
   /// @throws InputError: a triangle out of range, or a triangle with itself
   ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, const PositionsView& start,
                 double least, Execution& execution);
@@ -38,8 +39,9 @@ class ExcludedPairs {
   /// Removes the events that belong only to excluded pairs. Those of pairs that touch stay if their primitives are
   /// further apart than rounding at the end of the step: they have passed through each other. So do those of loose
   /// edges and vertices that touched at the start.
-  /// @param end position of a vertex at the end of the step
-  void remove_from(Events& events, const std::function<Vector3(Index)>& end) const;
+  /// @param start positions of all vertices at the start of the session, about any origin
+  /// @param end position of a vertex at the end of the step, about the same one
+  void remove_from(Events& events, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
 
   /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q.
   IndexPairs others(const IndexPairs& pairs, const PositionsView& q) const;
@@ -53,15 +55,14 @@ class ExcludedPairs {
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
-  void add_touching();
+  void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
-  void find_others_that_touch(Execution& execution);
+  void find_others_that_touch(const PositionsView& start, Execution& execution);
   IndexPairs bodies_of_pairs() const;
-  bool covers(const Event& event, const std::function<Vector3(Index)>& end) const;
+  bool covers(const Event& event, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
   std::shared_ptr<const Surface> surface_;
-  PositionsView start_;
   double least_;
   IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
   IndexPairs pairs_;                        // without limits

@@ -36,7 +36,7 @@ class SurfaceSession final : public SessionImplementation {
                  const Controls& accepted, const Controls& goal, Execution& execution)
       : context_(std::move(surface), std::move(obstacles), std::move(deformation), start, std::move(options),
                  execution),
-        queries_(context_, execution) {
+        queries_(context_, start, execution) {
     execution.check();
     restore(accepted, goal, execution);
     if (context_.obstacles().rows() > 0) context_.region_areas(accepted_.surface, execution);  // keeps the obstacles'

@@ -53,7 +53,7 @@ Run run(const Scene& scene, const StatePredicate& is_diverging, FirstSearch firs
   options.max_rounds = 40;
   const EditContext context(scene.surface, Positions(0, 3), scene.deformation, scene.controls, options, Execution(1));
   Execution execution(1);
-  CollisionQueries queries(context, execution);
+  CollisionQueries queries(context, scene.controls, execution);
   State accepted{scene.controls, context.surface_at(scene.controls, execution)};
   queries.check_start(accepted.surface, execution);
   std::optional<RoundProgress> progress;

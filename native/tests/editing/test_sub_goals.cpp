@@ -16,7 +16,7 @@ namespace {
 std::vector<Controls> best_path(const Scene& scene, const std::vector<double>& heights, double goal_height) {
   const EditContext context(scene.surface, Positions(0, 3), scene.deformation, scene.controls, {}, Execution(1));
   Execution execution(1);
-  CollisionQueries queries(context, execution);
+  CollisionQueries queries(context, scene.controls, execution);
   const auto at = [&](double height) { return moved(scene.controls, upper_sheet, Vector3(0, 0, height)); };
   EditReport report;
   for (const double height : heights) report.path.push_back(at(height));
