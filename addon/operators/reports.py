@@ -30,7 +30,7 @@ def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None
     if stiv_blender.is_cut_by_topology(result):
         return translate("blocked: the topology changes here")
     if result.status == "blocked" and not result.blocking and edit is not None and edit.keeps_intersections:
-        return translate("blocked: intersecting surfaces may only part")
+        return translate("blocked: intersecting surfaces may only part; see Let These Pass")
     return result_text(result.status, tuple(result.blocking), translate, stiv_blender.fit_message)
 
 

@@ -446,7 +446,7 @@ MESSAGES = {
     "as close as contact allows": "已尽可能接近",
     "blocked": "被阻挡",
     "blocked by {}": "被 {} 阻挡",
-    "blocked: intersecting surfaces may only part": "被阻挡：相交的表面只能分开",
+    "blocked: intersecting surfaces may only part; see Let These Pass": "被阻挡：相交的表面只能分开；参见“允许这些穿过”",
     "blocked: the topology changes here": "被阻挡：此处的拓扑会改变",
     "cancelled": "已取消",
     "cancelled, nothing changed": "已取消，没有改动",

@@ -446,7 +446,7 @@ MESSAGES = {
     "as close as contact allows": "so nah, wie der Kontakt es zulässt",
     "blocked": "blockiert",
     "blocked by {}": "blockiert von {}",
-    "blocked: intersecting surfaces may only part": "blockiert: was sich schneidet, darf sich nur trennen",
+    "blocked: intersecting surfaces may only part; see Let These Pass": "blockiert: was sich schneidet, darf sich nur trennen; siehe „Diese durchlassen“",
     "blocked: the topology changes here": "blockiert: hier ändert sich die Topologie",
     "cancelled": "abgebrochen",
     "cancelled, nothing changed": "abgebrochen, nichts ist verändert",

@@ -446,7 +446,7 @@ MESSAGES = {
     "as close as contact allows": "接触が許すところまで近づきました",
     "blocked": "進めません",
     "blocked by {}": "{} に阻まれています",
-    "blocked: intersecting surfaces may only part": "阻まれています: 交差している面は離れることしかできません",
+    "blocked: intersecting surfaces may only part; see Let These Pass": "阻まれています: 交差している面は離れることしかできません（「通過を許可」を参照）",
     "blocked: the topology changes here": "阻まれています: ここでトポロジーが変わります",
     "cancelled": "キャンセルしました",
     "cancelled, nothing changed": "キャンセルしました。何も変わっていません",

@@ -257,7 +257,7 @@ def test_the_redo_panel_repeats_the_messages_of_a_drag(scene: Any, monkeypatch: 
 @pytest.mark.parametrize(
     ("blocking", "keeps", "text"),
     [
-        ((), True, "blocked: intersecting surfaces may only part"),
+        ((), True, "blocked: intersecting surfaces may only part; see Let These Pass"),
         (("Wall",), True, "blocked by Wall"),
         ((), False, "blocked"),
     ],
