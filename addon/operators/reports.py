@@ -29,8 +29,12 @@ def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None
     """The status of a result, with the names of blocking objects, or why none is named. edit: of the result."""
     if stiv_blender.is_cut_by_topology(result):
         return translate("blocked: the topology changes here")
-    if result.status == "blocked" and not result.blocking and edit is not None and edit.keeps_intersections:
-        return translate("blocked: intersecting surfaces may only part; see Let These Pass")
+    if result.status == "blocked" and edit is not None and edit.keeps_intersections:
+        if not result.blocking:
+            return translate("blocked: intersecting surfaces may only part; see Let These Pass")
+        if len(result.blocking) == 1 and edit.intersects_itself(result.blocking[0]):
+            text = translate("blocked by {}, which cuts itself; see Let These Pass")
+            return stiv_blender.fit_message(text, result.blocking[0])
     return result_text(result.status, tuple(result.blocking), translate, stiv_blender.fit_message)
 
 

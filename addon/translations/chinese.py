@@ -446,6 +446,7 @@ MESSAGES = {
     "as close as contact allows": "已尽可能接近",
     "blocked": "被阻挡",
     "blocked by {}": "被 {} 阻挡",
+    "blocked by {}, which cuts itself; see Let These Pass": "被自身相交的 {} 阻挡；参见“允许这些穿过”",
     "blocked: intersecting surfaces may only part; see Let These Pass": "被阻挡：相交的表面只能分开；参见“允许这些穿过”",
     "blocked: the topology changes here": "被阻挡：此处的拓扑会改变",
     "cancelled": "已取消",

@@ -446,6 +446,7 @@ MESSAGES = {
     "as close as contact allows": "so nah, wie der Kontakt es zulässt",
     "blocked": "blockiert",
     "blocked by {}": "blockiert von {}",
+    "blocked by {}, which cuts itself; see Let These Pass": "blockiert von {}, das sich selbst schneidet; siehe „Diese durchlassen“",
     "blocked: intersecting surfaces may only part; see Let These Pass": "blockiert: was sich schneidet, darf sich nur trennen; siehe „Diese durchlassen“",
     "blocked: the topology changes here": "blockiert: hier ändert sich die Topologie",
     "cancelled": "abgebrochen",

@@ -446,6 +446,7 @@ MESSAGES = {
     "as close as contact allows": "接触が許すところまで近づきました",
     "blocked": "進めません",
     "blocked by {}": "{} に阻まれています",
+    "blocked by {}, which cuts itself; see Let These Pass": "自己交差している {} に阻まれています（「通過を許可」を参照）",
     "blocked: intersecting surfaces may only part; see Let These Pass": "阻まれています: 交差している面は離れることしかできません（「通過を許可」を参照）",
     "blocked: the topology changes here": "阻まれています: ここでトポロジーが変わります",
     "cancelled": "キャンセルしました",

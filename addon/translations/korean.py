@@ -446,6 +446,7 @@ MESSAGES = {
     "as close as contact allows": "접촉이 허용하는 한 가까이",
     "blocked": "막힘",
     "blocked by {}": "{}에 막힘",
+    "blocked by {}, which cuts itself; see Let These Pass": "자체 교차하는 {}에 막힘 (이들을 통과 허용 참조)",
     "blocked: intersecting surfaces may only part; see Let These Pass": "막힘: 교차하는 표면은 떨어지기만 할 수 있습니다 (이들을 통과 허용 참조)",
     "blocked: the topology changes here": "막힘: 여기서 토폴로지가 바뀝니다",
     "cancelled": "취소됨",

@@ -259,6 +259,8 @@ def test_the_redo_panel_repeats_the_messages_of_a_drag(scene: Any, monkeypatch: 
     [
         ((), True, "blocked: intersecting surfaces may only part; see Let These Pass"),
         (("Wall",), True, "blocked by Wall"),
+        (("Eyes",), True, "blocked by Eyes, which cuts itself; see Let These Pass"),
+        (("Eyes", "Wall"), True, "blocked by Eyes, Wall"),
         ((), False, "blocked"),
     ],
 )
@@ -266,7 +268,8 @@ def test_a_blocked_result_says_why_although_nothing_is_in_contact(
     blocking: tuple[str, ...], keeps: bool, text: str
 ) -> None:
     result = SimpleNamespace(status="blocked", blocking=blocking, counters={})
-    assert outcome_text(result, SimpleNamespace(keeps_intersections=keeps)) == text
+    edit = SimpleNamespace(keeps_intersections=keeps, intersects_itself=lambda name: name == "Eyes")
+    assert outcome_text(result, edit) == text
 
 
 def test_old_results_are_deleted() -> None:

@@ -30,7 +30,7 @@ from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.exclusions import intersection_notes
+from stiv.blender.scene.exclusions import intersection_notes, intersects_itself
 from stiv.blender.scene.obstacle_choice import find_obstacles
 from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scene.static_reading import forget_static_meshes
@@ -135,6 +135,10 @@ class BlenderEdit:
     def keeps_intersections(self) -> bool:
         """Are there intersections that stay, and may only shrink?"""
         return bool(self._solver.excluded.pairs)
+
+    def intersects_itself(self, name: str) -> bool:
+        """Does an object of this name intersect itself at the start? It can then deform little."""
+        return intersects_itself(self._solver.intersecting, name)
 
     @property
     def start_notes(self) -> tuple[str, ...]:

@@ -64,6 +64,11 @@ def loose_geometry_text(first: str, second: str) -> str:
     return fit_message("{}: loose geometry cuts {}; use Mesh > Clean Up > Delete Loose", first, second)
 
 
+def intersects_itself(excluded: Exclusions, name: str) -> bool:
+    """Are there excluded faces of an object and of the same object?"""
+    return any({side.partition(PART)[0] for side in sides} == {name} for sides in excluded.faces)
+
+
 def intersection_notes(
     excluded: Exclusions, moving: Collection[str], with_touching: Exclusions | None = None
 ) -> tuple[str, ...]:
