@@ -48,7 +48,7 @@ double distance_apart(Corners a, Corners b, const PositionsView& q) {
 
 IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
                          const PositionsView& q, double distance, Execution& execution) {
-  IndexPairs near = IntersectionTest(surface, {.lists_near_pairs = true}).find_near(q, execution);
+  IndexPairs near = IntersectionTest(surface, {.lists_near_pairs = true}).find_near(q, distance, execution);
   std::vector<unsigned char> touch(near.size(), 0);
   execution.for_chunks(static_cast<Index>(near.size()), 256, [&](Index begin, Index end, Index) {
     for (Index k = begin; k < end; ++k) {

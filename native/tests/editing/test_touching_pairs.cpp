@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <random>
 
 #include "acceptance/clearance/triangle_distance.hpp"
@@ -77,6 +78,22 @@ TEST_CASE("touching pairs: corners of slivers in one line") {
   pair.q << -8.1e-10, 0, 0.0185, 7.5e-10, 0, -0.0172, 5.7e-11, 0, -0.0013, 5.8e-10, 0, -0.0132;
   REQUIRE(!triangles_intersect(pair.first, pair.second, pair.q));
   CHECK(touch(pair, 1e-6));
+}
+
+TEST_CASE("touching pairs: all nearer than a distance, however long it is") {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> exponent(-4, 0);
+  int near = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    Pair pair = random_pair(0, random);
+    pair.q.col(2) *= 1e5;
+    if (triangles_intersect(pair.first, pair.second, pair.q)) continue;
+    const double distance = std::pow(10, exponent(random));
+    const bool is_near = triangle_distance(pair.first, pair.second, pair.q).distance < distance;
+    near += is_near;
+    CHECK(touch(pair, distance) == is_near);
+  }
+  CHECK(near > 200);
 }
 
 TEST_CASE("touching pairs: pairs that are apart, or intersect, do not touch") {

@@ -57,9 +57,9 @@ class IntersectionTest {
   /// All three of them.
   StaticPairs find_all(const PositionsView& q, Execution& execution);
 
-  /// Pairs of triangles that may intersect where each coordinate differs from q by a few units in the last place of
-  /// single precision, and some others that are near. For options that list near pairs.
-  IndexPairs find_near(const PositionsView& q, Execution& execution);
+  /// Pairs of triangles that may intersect where each coordinate differs from q by at most `distance`, and some others
+  /// that are near. For options that list near pairs.
+  IndexPairs find_near(const PositionsView& q, double distance, Execution& execution);
 
   /// True if nothing intersects; stops at the first intersection.
   /// @param moved (N) nonzero for vertices that differ from a state known to be free; only pairs with a moved vertex

@@ -148,9 +148,9 @@ class IntersectionTest::Implementation {
     return found;
   }
 
-  IndexPairs find_near(const PositionsView& q, const Execution& execution) {
+  IndexPairs find_near(const PositionsView& q, double distance, const Execution& execution) {
     check_positions(q, execution);
-    near_->begin(q, {}, execution);
+    near_->begin(q, {}, execution, distance);
     update({&triangles_}, q, {}, execution);
     std::vector<CornerPair> listed;
     find_among(triangles_, q, listed, execution);
@@ -301,9 +301,9 @@ StaticPairs IntersectionTest::find_all(const PositionsView& q, Execution& execut
   return implementation_->find_all(q, execution);
 }
 
-IndexPairs IntersectionTest::find_near(const PositionsView& q, Execution& execution) {
+IndexPairs IntersectionTest::find_near(const PositionsView& q, double distance, Execution& execution) {
   const FloatingPointScope floating_point;
-  return implementation_->find_near(q, execution);
+  return implementation_->find_near(q, distance, execution);
 }
 
 bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {

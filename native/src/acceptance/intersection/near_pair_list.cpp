@@ -38,8 +38,8 @@ double NearPairList::reach_near(const PositionsView& q, const std::vector<unsign
 }
 
 std::vector<unsigned char> NearPairList::begin(const PositionsView& q, const std::vector<unsigned char>& moved,
-                                               const Execution& execution) {
-  const double reach = reach_near(q, moved, execution);
+                                               const Execution& execution, double least) {
+  const double reach = std::max(reach_near(q, moved, execution), least);
   reach_ = moved.empty() ? reach : std::max(reach_, reach);
   if (moved.empty() || !is_complete_ || near_->reach != reach_) return {};
   std::vector<unsigned char> searched = moved;

@@ -21,10 +21,11 @@ class NearPairList {
 
   /// Begins a test.
   /// @param moved as in IntersectionTest::is_free
+  /// @param least of the reach
   /// @return the vertices whose pairs have to be searched, as `moved`: those of `moved`, and more if the list needs
   /// them
   std::vector<unsigned char> begin(const PositionsView& q, const std::vector<unsigned char>& moved,
-                                   const Execution& execution);
+                                   const Execution& execution, double least = 0);
 
   /// Of the pairs to list, since `begin`.
   double reach() const { return reach_; }
