@@ -22,10 +22,12 @@ Edges find_intersections(const SurfacePointer& surface, const PositionsView& q, 
   return as_rows(IntersectionTest(surface).find(q, execution));
 }
 
-std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const PositionsView& q, int threads) {
+std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const PositionsView& q, double distance,
+                                                 int threads) {
   Execution execution(threads);
-  IntersectionTest test(surface);
-  return {as_rows(test.find_loose_edges(q, execution)), as_rows(test.find_loose_vertices(q, execution))};
+  const StaticPairs found =
+      IntersectionTest(surface, {.lists_near_pairs = true}).find_near_loose(q, distance, execution);
+  return {as_rows(found.loose_edges), as_rows(found.loose_vertices)};
 }
 
 bool step_is_free(const SurfacePointer& surface, const PositionsView& start, const PositionsView& end,
@@ -95,7 +97,8 @@ void bind_acceptance(py::module_& module) {
   const py::arg surface("surface"), positions("positions"), start("start"), end("end"), separation("separation"),
       threads("threads");
   module.def("find_intersections", &find_intersections, surface, positions, threads, Release());
-  module.def("find_loose_intersections", &find_loose_intersections, surface, positions, threads, Release());
+  module.def("find_loose_intersections", &find_loose_intersections, surface, positions, py::arg("distance"), threads,
+             Release());
   module.def("is_step_free", &step_is_free, surface, start, end, separation, threads, Release());
   module.def("stored_mesh", &stored_mesh, py::arg("mesh"), py::arg("frame"));
   module.def(

@@ -47,15 +47,17 @@ class IntersectionTest:
 
 
 def find_loose_intersections(
-    vertices: ArrayLike, surface: Surface, *, all_bodies: bool = False, threads: int = 0
+    vertices: ArrayLike, surface: Surface, *, all_bodies: bool = False, distance: float = 0.0, threads: int = 0
 ) -> tuple[Indices, Indices]:
     """Return intersections of loose elements: pairs (loose edge, triangle) and (loose vertex, triangle).
 
-    Each is (K, 2) int32, sorted. A loose vertex belongs to no triangle and no loose edge. Arguments, exactness and
-    errors are those of find_intersections.
+    Each is (K, 2) int32, sorted. A loose vertex belongs to no triangle and no loose edge. Pairs that are nearer than
+    `distance` beside their common vertices count too, up to rounding; it is at least 0, in the units of the vertices.
+    Other arguments, exactness and errors are those of find_intersections.
     """
     whole, q = _prepared(vertices, surface, all_bodies)
-    return _native.find_loose_intersections(whole.native, q, as_count(threads, "threads"))
+    least = as_number(distance, "distance", 0.0)
+    return _native.find_loose_intersections(whole.native, q, least, as_count(threads, "threads"))
 
 
 def is_step_free(

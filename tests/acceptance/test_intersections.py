@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The exact static test against rational arithmetic, for all ways in which two triangles can share corners."""
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -156,6 +157,17 @@ def test_loose_edges_and_vertices() -> None:
     surface = stiv.Surface([[0, 1, 2]], 7, loose_edges=[[3, 4], [4, 6]])
     edges, points = stiv.find_loose_intersections(vertices, surface)
     assert edges.tolist() == [[0, 0]] and points.tolist() == [[5, 0]]
+
+
+@given(height=st.floats(1e-6, 1.0), distance=st.floats(1e-6, 1.0))
+def test_loose_edges_and_vertices_nearer_than_a_distance(height: float, distance: float) -> None:
+    corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0]]
+    loose = [[1, 1, height], [1.5, 1, height], [1, 2, height], [-1, -1, 0], [-height / 2, -height / 2, 0]]
+    surface = stiv.Surface([[0, 1, 2]], 8, loose_edges=[[3, 4], [6, 0]])
+    edges, points = stiv.find_loose_intersections([*corners, *loose], surface, distance=distance)
+    assert edges.tolist() == ([[0, 0]] if height < distance else [])  # the other edge is attached, and points away
+    near = [[5, 0]] if height < distance else []
+    assert points.tolist() == near + ([[7, 0]] if height / math.sqrt(2) < distance else [])
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ LANGUAGES = sorted(errors.CATALOGUES)
 ENOUGH = 0.9
 FOR_SCRIPTS = re.compile(r"^\w+: \{\}|--|^the settings name it|^there is no (object|scene)")
 BY_HAND = {  # of the compiled core, or composed of several parts
-    "1 loose edge or vertex cuts it and is not tested", "{} loose edges or vertices cut it and are not tested",
+    "1 loose edge or vertex touches it and is not tested", "{} loose edges or vertices touch it and are not tested",
     "1 triangle has no area", "1 vertex follows", "back to the last state without intersections: {}",
     "bodies that may overlap would overlap more than at the start", "collisions stay off: {}",
     "loose geometry cuts {}; use Mesh > Clean Up > Delete Loose",

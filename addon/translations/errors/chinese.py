@@ -2,7 +2,7 @@
 """Simplified Chinese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "1 loose edge or vertex cuts it and is not tested": "1 个松散边或顶点与其相交，不受检测",
+    "1 loose edge or vertex touches it and is not tested": "1 个松散边或顶点与其接触，不受检测",
     "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 pair of faces cut each other{}": "1 对面相交{}",
@@ -162,7 +162,7 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} 自相交，{} 个面，保持原样",
     "{} is connected to its parent; rotate it": "{} 与父级相连；请改为旋转",
     "{} is gone": "{} 已不存在",
-    "{} loose edges or vertices cut it and are not tested": "{} 个松散边或顶点与其相交，不受检测",
+    "{} loose edges or vertices touch it and are not tested": "{} 个松散边或顶点与其接触，不受检测",
     "{} more objects intersect themselves, left as they are": "另有 {} 个物体自相交，保持原样",
     "{} more pairs of objects cut each other, may only part": "另有 {} 对物体相交，只能分开",
     "{} on its seams": "接缝上{}",

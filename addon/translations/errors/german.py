@@ -2,7 +2,7 @@
 """German messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "1 loose edge or vertex cuts it and is not tested": "1 lose Kante oder Punkt schneidet es und bleibt ungeprüft",
+    "1 loose edge or vertex touches it and is not tested": "1 lose Kante oder Punkt berührt es und bleibt ungeprüft",
     "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 pair of faces cut each other{}": "1 Flächenpaar schneidet sich{}",
@@ -162,7 +162,7 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} schneidet sich selbst, {} Flächen, bleibt so",
     "{} is connected to its parent; rotate it": "{} ist mit dem Elternknochen verbunden; stattdessen drehen",
     "{} is gone": "{} ist nicht mehr da",
-    "{} loose edges or vertices cut it and are not tested": "{} lose Kanten oder Punkte schneiden es und bleiben ungeprüft",
+    "{} loose edges or vertices touch it and are not tested": "{} lose Kanten oder Punkte berühren es und bleiben ungeprüft",
     "{} more objects intersect themselves, left as they are": "{} weitere Objekte schneiden sich selbst, bleiben so",
     "{} more pairs of objects cut each other, may only part": "{} weitere Objektpaare schneiden sich, dürfen sich nur trennen",
     "{} on its seams": "{} an den Nähten",

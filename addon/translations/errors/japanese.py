@@ -2,7 +2,7 @@
 """Japanese messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "1 loose edge or vertex cuts it and is not tested": "孤立した辺または頂点 1 個が交差していて、検査されません",
+    "1 loose edge or vertex touches it and is not tested": "孤立した辺または頂点 1 個が接触していて、検査されません",
     "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 pair of faces cut each other{}": "1 組の面が交差{}",
@@ -162,7 +162,7 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{} は自己交差しています (面 {})。そのままにします",
     "{} is connected to its parent; rotate it": "{} は親に接続されています。回転してください",
     "{} is gone": "{} がなくなりました",
-    "{} loose edges or vertices cut it and are not tested": "孤立した辺または頂点 {} 個が交差していて、検査されません",
+    "{} loose edges or vertices touch it and are not tested": "孤立した辺または頂点 {} 個が接触していて、検査されません",
     "{} more objects intersect themselves, left as they are": "ほか {} 個のオブジェクトが自己交差しています。そのままにします",
     "{} more pairs of objects cut each other, may only part": "ほか {} 組のオブジェクトが交差。離れることだけできます",
     "{} on its seams": "シーム上で {}",

@@ -2,7 +2,7 @@
 """Korean messages of errors, by their English templates (tools/error_messages.py lists these)."""
 
 MESSAGES = {
-    "1 loose edge or vertex cuts it and is not tested": "느슨한 에지 또는 버텍스 1개가 교차하며 검사하지 않음",
+    "1 loose edge or vertex touches it and is not tested": "느슨한 에지 또는 버텍스 1개가 접촉하며 검사하지 않음",
     "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 pair of faces cut each other{}": "면 한 쌍이 서로 교차함{}",
@@ -162,7 +162,7 @@ MESSAGES = {
     "{} intersects itself, {} faces, left as it is": "{}이(가) 자체 교차함, 면 {}개, 그대로 둠",
     "{} is connected to its parent; rotate it": "{} 은(는) 부모에 연결됨; 대신 회전하기",
     "{} is gone": "{}이(가) 사라짐",
-    "{} loose edges or vertices cut it and are not tested": "느슨한 에지 또는 버텍스 {}개가 교차하며 검사하지 않음",
+    "{} loose edges or vertices touch it and are not tested": "느슨한 에지 또는 버텍스 {}개가 접촉하며 검사하지 않음",
     "{} more objects intersect themselves, left as they are": "외 오브젝트 {}개가 자체 교차함, 그대로 둠",
     "{} more pairs of objects cut each other, may only part": "외 오브젝트 {}쌍이 교차함, 떨어질 수만 있음",
     "{} on its seams": "이음매에서 {}",

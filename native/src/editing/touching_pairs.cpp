@@ -18,32 +18,6 @@ Corners corners_of(const Surface& surface, Index triangle) {
   return {triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
 }
 
-bool has(const Corners& triangle, Index corner) {
-  return std::find(triangle.begin(), triangle.end(), corner) != triangle.end();
-}
-
-/// The triangle with its corners that another one has at its end. Returns how many these are.
-std::ptrdiff_t put_shared_last(Corners& triangle, const Corners& other) {
-  const auto shared =
-      std::partition(triangle.begin(), triangle.end(), [&](Index corner) { return !has(other, corner); });
-  return triangle.end() - shared;
-}
-
-/// The distance of two triangles that do not intersect; of triangles with common corners, that of the sides and corners
-/// that are not common.
-double distance_apart(Corners a, Corners b, const PositionsView& q) {
-  const auto distance = [&](const Corners& first, const Corners& second) {
-    return triangle_distance(first, second, q).distance;
-  };
-  const std::ptrdiff_t shared = put_shared_last(a, b);
-  put_shared_last(b, a);
-  if (shared == 0) return distance(a, b);
-  if (shared == 1) return std::min(distance({a[0], a[1], a[1]}, b), distance(a, {b[0], b[1], b[1]}));
-  const double to_corners = std::min(distance({a[0], a[0], a[0]}, b), distance(a, {b[0], b[0], b[0]}));
-  const Index v = a[1], w = a[2];  // sides that meet in no corner
-  return std::min({to_corners, distance({v, a[0], a[0]}, {w, b[0], b[0]}), distance({w, a[0], a[0]}, {v, b[0], b[0]})});
-}
-
 }  // namespace
 
 IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,

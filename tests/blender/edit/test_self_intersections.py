@@ -4,6 +4,7 @@
 from typing import Any
 
 import bpy
+import numpy as np
 import pytest
 from building import add_cube, add_grid, add_modifier, edit_mode, select, shift
 
@@ -77,10 +78,28 @@ def test_loose_parts_that_cut_their_own_mesh_are_left_out_and_counted(kind: str)
     before = len(check_scene(bpy.context).pairs)
     assert before > 0
     edit = BlenderEdit.begin(bpy.context, DEFORM, "move")
-    assert edit.start_notes == ("Sword: 1 loose edge or vertex cuts it and is not tested",)
+    assert edit.start_notes == ("Sword: 1 loose edge or vertex touches it and is not tested",)
     assert edit.apply(shift(z=-2.0)).status == "corrected"
     assert edit.write().passed
     assert not [pair for pair in check_scene(bpy.context).pairs if pair.first.kind == pair.second.kind == "face"]
+
+
+def test_loose_edges_in_the_plane_of_a_face_do_not_block_their_mesh() -> None:
+    """Rounding decides whether they cut it, anew after each motion."""
+    grid = add_grid("Decal", 4)
+    grid.rotation_euler = (0.3, 0.5, 0.7)
+    for number, place in enumerate(np.random.default_rng(3).uniform(-0.4, 0.4, (12, 2))):
+        count = len(grid.data.vertices)
+        grid.data.vertices.add(2)
+        grid.data.vertices[count].co = (*place, 1e-8)
+        grid.data.vertices[count + 1].co = (*(place + 0.01), -1e-8 if number % 2 else 1e-8)
+        grid.data.edges.add(1)
+        grid.data.edges[-1].vertices = (count, count + 1)
+    select(grid)
+    edit = BlenderEdit.begin(bpy.context, DEFORM, "move")
+    assert edit.start_notes == ("Decal: 12 loose edges or vertices touch it and are not tested",)
+    assert edit.apply(shift(x=0.37, y=0.21, z=0.5)).status == "reached"
+    assert edit.write().passed
 
 
 def test_loose_parts_that_cut_another_object_are_refused_by_name() -> None:

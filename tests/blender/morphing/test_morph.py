@@ -299,7 +299,7 @@ def test_loose_edges_that_cut_their_own_mesh_are_left_out_and_counted() -> None:
     sheet.data.edges[-1].vertices = (4, 5)
     add_key(sheet, "Wide", lambda co: (co[0] * 2, co[1], co[2]))
     report = morph(bpy.context, {"Sheet": {"Wide": 1.0}}, SETTINGS)
-    note = "Sheet: 1 loose edge or vertex cuts it and is not tested"
+    note = "Sheet: 1 loose edge or vertex touches it and is not tested"
     assert (report.status, report.start_notes) == ("reached", (note,))
 
 

@@ -61,6 +61,10 @@ class IntersectionTest {
   /// that are near. For options that list near pairs.
   IndexPairs find_near(const PositionsView& q, double distance, Execution& execution);
 
+  /// The pairs of `find_loose_edges` and `find_loose_vertices`, and those that are nearer than `distance` beside their
+  /// common vertices. For options that list near pairs.
+  StaticPairs find_near_loose(const PositionsView& q, double distance, Execution& execution);
+
   /// True if nothing intersects; stops at the first intersection.
   /// @param moved (N) nonzero for vertices that differ from a state known to be free; only pairs with a moved vertex
   /// are tested. Empty: all

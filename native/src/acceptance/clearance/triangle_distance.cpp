@@ -41,6 +41,19 @@ Corners sides_of(const Corners& triangle) {
   return {triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
 }
 
+using Triangle = std::array<Index, 3>;
+
+bool has(const Triangle& triangle, Index corner) {
+  return std::find(triangle.begin(), triangle.end(), corner) != triangle.end();
+}
+
+/// The triangle with its corners that another one has at its end. Returns how many these are.
+std::ptrdiff_t put_shared_last(Triangle& triangle, const Triangle& other) {
+  const auto shared =
+      std::partition(triangle.begin(), triangle.end(), [&](Index corner) { return !has(other, corner); });
+  return triangle.end() - shared;
+}
+
 }  // namespace
 
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
@@ -80,6 +93,19 @@ NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std:
     }
   }
   return nearest;
+}
+
+double distance_apart(std::array<Index, 3> a, std::array<Index, 3> b, const PositionsView& q) {
+  const auto distance = [&](const Triangle& first, const Triangle& second) {
+    return triangle_distance(first, second, q).distance;
+  };
+  const std::ptrdiff_t shared = put_shared_last(a, b);
+  put_shared_last(b, a);
+  if (shared == 0) return distance(a, b);
+  if (shared == 1) return std::min(distance({a[0], a[1], a[1]}, b), distance(a, {b[0], b[1], b[1]}));
+  const double to_corners = std::min(distance({a[0], a[0], a[0]}, b), distance(a, {b[0], b[0], b[0]}));
+  const Index v = a[1], w = a[2];  // sides that meet in no corner
+  return std::min({to_corners, distance({v, a[0], a[0]}, {w, b[0], b[0]}), distance({w, a[0], a[0]}, {v, b[0], b[0]})});
 }
 
 double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,

@@ -17,6 +17,10 @@ NearestTriangles triangle_distance(const std::array<Index, 3>& first, const std:
 double least_triangle_distance(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                                const PositionsView& q);
 
+/// The distance of two triangles that do not intersect; of triangles with one or two common corners, that of the sides
+/// and corners that are not common. A triangle whose first two corners are equal is a segment.
+double distance_apart(std::array<Index, 3> a, std::array<Index, 3> b, const PositionsView& q);
+
 /// Bound of the depth to which two triangles intersect: the shortest motion that parts them along one of their
 /// separating axes. Corners that they share do not count as an intersection.
 double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <optional>
 #include <utility>
 
+#include "acceptance/clearance/triangle_distance.hpp"
 #include "acceptance/intersection/candidate_test.hpp"
 #include "acceptance/intersection/near_pair_list.hpp"
 #include "acceptance/intersection/placed_vertices.hpp"
@@ -32,6 +34,36 @@ CornerList corners_within_tested_bodies(const Surface& surface, const CornerList
     if (surface.bodies_meet(body, body)) some.push_back(corners);
   }
   return some;
+}
+
+/// Finds primitives by their corners, in any order.
+class PrimitiveNumbers {
+ public:
+  explicit PrimitiveNumbers(const CornerList& all) {
+    for (const auto& corners : all) rows_.emplace_back(sorted(corners), static_cast<Index>(rows_.size()));
+    std::sort(rows_.begin(), rows_.end());
+  }
+
+  Index of(const std::array<Index, 3>& corners) const {
+    return std::lower_bound(rows_.begin(), rows_.end(), std::pair(sorted(corners), Index{0}))->second;
+  }
+
+ private:
+  static std::array<Index, 3> sorted(std::array<Index, 3> corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  }
+
+  std::vector<std::pair<std::array<Index, 3>, Index>> rows_;
+};
+
+/// The distance of a loose edge or vertex, whose last corner repeats, and a triangle. Infinite if an edge has both
+/// vertices in common with the triangle.
+double loose_distance(const CornerPair& pair, const PositionsView& q) {
+  const auto& [a, b, repeated] = pair.first;
+  const auto is_corner = [&](Index vertex) { return std::ranges::find(pair.second, vertex) != pair.second.end(); };
+  if (is_corner(a) && is_corner(b)) return std::numeric_limits<double>::infinity();
+  return is_corner(a) ? distance_apart({b, b, a}, pair.second, q) : distance_apart({a, a, b}, pair.second, q);
 }
 
 /// Searches for intersections of two kinds of primitives, or of one kind with itself.
@@ -162,6 +194,23 @@ class IntersectionTest::Implementation {
     return numbered(listed);
   }
 
+  StaticPairs find_near_loose(const PositionsView& q, double distance, const Execution& execution) {
+    check_positions(q, execution);
+    near_->begin(q, {}, execution, distance);
+    update({&triangles_, &loose_edges_, &loose_vertices_}, q, {}, execution);
+    const auto find = [&](const Primitives& loose) {
+      std::vector<CornerPair> listed;
+      IndexPairs found = find_among(loose, q, listed, execution);
+      std::erase_if(listed, [&](const CornerPair& pair) { return !(loose_distance(pair, q) < distance); });
+      const IndexPairs near = numbered(listed, loose);
+      found.insert(found.end(), near.begin(), near.end());
+      std::sort(found.begin(), found.end());
+      found.erase(std::unique(found.begin(), found.end()), found.end());
+      return found;
+    };
+    return {{}, find(loose_edges_), numbered(find(loose_vertices_))};
+  }
+
   bool is_free(const PositionsView& q, const std::vector<unsigned char>& moved, const Execution& execution) {
     check_positions(q, execution);
     NearPairList::Found listed;
@@ -215,23 +264,21 @@ class IntersectionTest::Implementation {
     return pairs;
   }
 
-  /// Numbers of the triangles of pairs, sorted.
+  /// Numbers of the triangles of pairs, smaller number first, sorted.
   IndexPairs numbered(const std::vector<CornerPair>& pairs) const {
-    const auto sorted = [](std::array<Index, 3> corners) {
-      std::sort(corners.begin(), corners.end());
-      return corners;
-    };
-    std::vector<std::pair<std::array<Index, 3>, Index>> triangles;
-    for (const auto& corners : triangles_.all_corners())
-      triangles.emplace_back(sorted(corners), static_cast<Index>(triangles.size()));
-    std::sort(triangles.begin(), triangles.end());
-    const auto number = [&](const std::array<Index, 3>& corners) {
-      return std::lower_bound(triangles.begin(), triangles.end(), std::pair(sorted(corners), Index{0}))->second;
-    };
-    IndexPairs found;
-    for (const auto& [first, second] : pairs) found.push_back(std::minmax(number(first), number(second)));
+    IndexPairs found = numbered(pairs, triangles_);
+    for (auto& [first, second] : found)
+      if (second < first) std::swap(first, second);
     std::sort(found.begin(), found.end());
     found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+  /// Numbers of the primitives in pairs with triangles.
+  IndexPairs numbered(const std::vector<CornerPair>& pairs, const Primitives& first) const {
+    const PrimitiveNumbers of_first(first.all_corners()), of_second(triangles_.all_corners());
+    IndexPairs found;
+    for (const auto& pair : pairs) found.emplace_back(of_first.of(pair.first), of_second.of(pair.second));
     return found;
   }
 
@@ -304,6 +351,11 @@ StaticPairs IntersectionTest::find_all(const PositionsView& q, Execution& execut
 IndexPairs IntersectionTest::find_near(const PositionsView& q, double distance, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find_near(q, distance, execution);
+}
+
+StaticPairs IntersectionTest::find_near_loose(const PositionsView& q, double distance, Execution& execution) {
+  const FloatingPointScope floating_point;
+  return implementation_->find_near_loose(q, distance, execution);
 }
 
 bool IntersectionTest::is_free(const PositionsView& q, const std::vector<unsigned char>& moved, Execution& execution) {

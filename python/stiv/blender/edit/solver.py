@@ -22,7 +22,7 @@ from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
-from stiv.blender.scene.loose_parts import find_cutting_parts, loose_part_notes, without_loose_parts
+from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
@@ -186,7 +186,7 @@ class EditSolver:
             moving = self._moving(assembly)
             pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, moving)
             self.intersecting = self.excluded = pairs
-            loose = find_cutting_parts(assembly, moving, self._settings.threads)
+            loose = find_touching_parts(assembly, moving, self._settings.threads)
             self.loose_part_notes = loose_part_notes(assembly, loose)
             self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)

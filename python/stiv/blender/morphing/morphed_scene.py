@@ -17,7 +17,7 @@ from stiv.blender.morphing.key_sliders import KeySlider
 from stiv.blender.scene.arrays import Floats, Indices, diagonal_of
 from stiv.blender.scene.assembly import assemble, mesh_seams
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
-from stiv.blender.scene.loose_parts import find_cutting_parts, loose_part_notes, without_loose_parts
+from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import guard_bent_quads
 from stiv.blender.settings import EditSettings
@@ -162,7 +162,7 @@ class MorphedScene:
 
     def leave_out_cutting_parts(self) -> tuple[str, ...]:
         """Leave out the loose edges and vertices that cut their own object; returns notes on them."""
-        loose = find_cutting_parts(self.assembly, (), self.settings.threads)
+        loose = find_touching_parts(self.assembly, (), self.settings.threads)
         notes = loose_part_notes(self.assembly, loose)
         self.assembly = without_loose_parts(self.assembly, loose)
         return notes

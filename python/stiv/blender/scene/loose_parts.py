@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Leaves out loose edges and vertices that cut their own object, as only pairs of triangles can be excluded."""
+"""Leaves out loose edges and vertices that touch their own object: only pairs of triangles can be excluded."""
 
 from collections import Counter
 from collections.abc import Callable, Collection
@@ -29,20 +29,37 @@ class LooseParts:
     vertices: Indices
 
 
-def find_cutting_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
-    """The loose edges and vertices that cut only faces which need no decision: see `needs_no_decision`."""
+_ROUNDING = 64  # units in the last place that positions may differ from stored ones
+
+
+def find_touching_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
+    """The loose edges and vertices that cut or touch only faces which need no decision: see `needs_no_decision`.
+
+    Rounding decides whether those that touch cut, so each motion may change it.
+    """
     surface = assembly.surface
     if not has_loose_elements(surface):
         return LooseParts(np.empty(0, np.int32), np.empty(0, np.int32))
-    edges, vertices = stiv.find_loose_intersections(assembly.positions, surface, threads=threads)
-    cut_edges = _cutting(edges, assembly.loose_edge, assembly, together)
+    edges, vertices = stiv.find_loose_intersections(
+        assembly.positions, surface, distance=_rounding(assembly), threads=threads
+    )
+    touching_edges = _touching(edges, assembly.loose_edge, assembly, together)
     used = np.zeros(surface.vertex_count, np.bool_)
-    used[surface.triangles] = used[np.delete(surface.loose_edges, cut_edges, axis=0)] = True
-    ends = np.union1d(surface.loose_edges[cut_edges], _cutting(vertices, assembly.vertex, assembly, together))
-    return LooseParts(cut_edges, ends[~used[ends]].astype(np.int32))
+    used[surface.triangles] = used[np.delete(surface.loose_edges, touching_edges, axis=0)] = True
+    ends = np.union1d(surface.loose_edges[touching_edges], _touching(vertices, assembly.vertex, assembly, together))
+    return LooseParts(touching_edges, ends[~used[ends]].astype(np.int32))
 
 
-def _cutting(
+def _rounding(assembly: Assembly) -> float:
+    """How far rounding can move a stored vertex of a mesh with loose elements; objects may be far from their origin."""
+    largest = 0.0
+    for mesh in assembly.meshes:
+        if len(mesh.loose_edges) or len(np.unique(mesh.triangles)) < len(mesh.local):
+            largest = max(largest, float(abs(mesh.world()).max()) + float(abs(mesh.matrix[:3, 3]).max()))
+    return _ROUNDING * float(np.spacing(np.float32(largest)))
+
+
+def _touching(
     pairs: Indices, element: Callable[[int], Element], assembly: Assembly, together: Collection[str]
 ) -> Indices:
     """The first numbers of pairs with triangles, (k, 2), if none of their pairs needs a decision."""
@@ -91,5 +108,5 @@ def loose_part_notes(assembly: Assembly, parts: LooseParts) -> tuple[str, ...]:
 
 def _note(name: str, count: int) -> str:
     if count == 1:
-        return fit_message("{}: 1 loose edge or vertex cuts it and is not tested", name)
-    return fit_message("{}" + f": {count:,} loose edges or vertices cut it and are not tested", name)
+        return fit_message("{}: 1 loose edge or vertex touches it and is not tested", name)
+    return fit_message("{}" + f": {count:,} loose edges or vertices touch it and are not tested", name)
