@@ -85,7 +85,7 @@ def test_loose_parts_that_cut_their_own_mesh_are_left_out_and_counted(kind: str)
 
 
 def test_loose_edges_in_the_plane_of_a_face_do_not_block_their_mesh() -> None:
-    """Rounding decides whether they cut it, anew after each motion."""
+    """After each motion, rounding decides again whether they cut it."""
     grid = add_grid("Decal", 4)
     grid.rotation_euler = (0.3, 0.5, 0.7)
     for number, place in enumerate(np.random.default_rng(3).uniform(-0.4, 0.4, (12, 2))):
