@@ -13,7 +13,7 @@ from ..transform.view import Vector
 
 def axes_of(context: bpy.types.Context, name: str) -> Vector:
     """Axes of an orientation by its name; those of the world for one that is not supported."""
-    read = {"LOCAL": active_axes, "VIEW": _view, "CURSOR": _cursor, "PARENT": _parent, "NORMAL": _normal}.get(name)
+    read = {"LOCAL": active_axes, "VIEW": view_axes, "CURSOR": _cursor, "PARENT": _parent, "NORMAL": _normal}.get(name)
     if read is not None:
         return read(context)
     custom = context.scene.transform_orientation_slots[0].custom_orientation if name != "GLOBAL" else None
@@ -42,7 +42,8 @@ def _object_axes(obj: bpy.types.Object | None) -> Vector:
     return np.eye(3) if obj is None else orthonormal(np.array(obj.matrix_world)[:3, :3])
 
 
-def _view(context: bpy.types.Context) -> Vector:
+def view_axes(context: bpy.types.Context) -> Vector:
+    """(3, 3) unit columns right, up and toward the viewer; the identity without a view."""
     data = context.region_data
     return np.eye(3) if data is None else orthonormal(np.linalg.inv(np.array(data.view_matrix))[:3, :3])
 

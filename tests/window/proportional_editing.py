@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bmesh
 import bpy
+import extension
 import scenes
 from playing import CLOSE, INTO_WALL, click, expect_free, expect_near, prepared, start
 from simulation import Steps, Window
@@ -14,6 +15,12 @@ def strip_y(at_x: float) -> float:
     """Displacement of the strip along y at x."""
     content = bmesh.from_edit_mesh(bpy.data.objects["Strip"].data)
     return max(vertex.co.y for vertex in content.verts if abs(vertex.co.x - at_x) < 0.05) - 0.2
+
+
+def circle_radius() -> float | None:
+    """Radius of the circle that is drawn; None without one."""
+    shown = extension.module("overlay.guides").shown()
+    return None if shown is None else shown.radius
 
 
 def proportional(window: Window) -> Steps:
@@ -31,9 +38,10 @@ def proportional(window: Window) -> Steps:
     expect_near(strip_y(0.6), 0.0, 1e-6, "a neighbour without proportional editing")
     window.key("O")
     yield from window.settle()
-    before = strip_y(0.6)
+    before, radius = strip_y(0.6), circle_radius()
     assert 0.05 < before < 0.45, before
     window.picture("proportional")
+    assert radius == 1.0 and strip_y(0.0) < 1e-6 < strip_y(0.3), "the circle encloses the moved vertices"
     for _ in range(4):
         window.key("WHEELDOWNMOUSE")
         yield
@@ -41,12 +49,14 @@ def proportional(window: Window) -> Steps:
     yield from window.settle()
     larger = strip_y(0.6)
     assert larger > before + 0.05, (before, larger)
+    expect_near(circle_radius() or 0.0, radius * 1.1**5, 1e-3, "the circle after five steps of its size")
     for _ in range(6):
         window.key("O", shift=True)  # smooth, ... constant
         yield
     yield from window.settle()
     expect_near(strip_y(0.6), strip_y(1.2), 1e-5, "a neighbour with the constant falloff")
     yield from click(window)
+    assert circle_radius() is None
     expect_near(strip_y(0.6), 0.5, CLOSE, "a neighbour after confirming")
     expect_free(window)
     yield from window.undo()

@@ -19,7 +19,7 @@ from ...modal.pointer import Pointer
 from ...modal.request import Request
 from ...modal.state import Effect, State
 from ...native_module import Mixin
-from ...overlay import display
+from ...overlay import display, guides
 from ...scene.edit_settings import DRAG_BUDGET
 from ...scene.frame import frame_in_new_view, orientation_names, read_frame, read_selection
 from ...scene.tool_settings import (
@@ -181,6 +181,8 @@ class DragOperator(Mixin):
         """Update header, status bar and views if anything has changed; an idle timer draws nothing."""
         drag, writer = self._drag, self._drag.writer
         self._show_waiting(context)
+        chosen = drag.progress is Progress.RUNNING or drag.progress is Progress.STARTING
+        guides.show(guides.guides_of(drag.state, self._frame) if chosen else None)
         if drag.progress is not Progress.RUNNING or drag.edit is None or drag.shows_soon:
             return
         label = translate(OPERATORS[drag.state.kind].bl_label)
@@ -260,6 +262,7 @@ class DragOperator(Mixin):
             window_io.show_wait_cursor(context, False)
         window_io.stop_timer(context, self._timer)
         display.end_edit()
+        guides.show(None)
         window_io.clear(context)
 
 
