@@ -112,6 +112,27 @@ def test_objects_that_are_only_rendered_are_obstacles() -> None:
     assert cube.location.x < 2.5 and meetings() == [0, 0, 0]
 
 
+@pytest.mark.parametrize("guard", ["viewport", "render", "both"])
+def test_objects_outside_local_view_are_obstacles_to_the_render_only(guard: str) -> None:
+    add_wall()
+    cube = add_cube("Cube")
+    select(cube)
+    bpy.context.scene.stiv.guard = guard
+    window = bpy.context.window_manager.windows[0]
+    area = next(area for area in window.screen.areas if area.type == "VIEW_3D")
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.view3d.localview(frame_selected=False)
+        try:
+            assert move() == ""
+        finally:
+            bpy.ops.view3d.localview(frame_selected=False)
+    if guard == "viewport":
+        assert cube.location.x == 4.0
+    else:
+        assert cube.location.x < 2.5 and meetings() == [0, 0, 0]
+
+
 def test_objects_that_are_not_rendered_are_ignored_in_the_render() -> None:
     add_wall().hide_render = True
     cube = add_cube("Cube")
