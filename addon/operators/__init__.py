@@ -13,6 +13,7 @@ from .repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_interse
 from .repair.expand import STIV_OT_expand
 from .repair.guard_revert import STIV_OT_guard_revert
 from .repair.passing import STIV_OT_let_pass, STIV_OT_let_pass_remove
+from .repair.popup import STIV_OT_popup
 from .repair.repair import STIV_OT_repair
 from .repair.separate import STIV_OT_separate
 from .repair.settle import STIV_OT_settle
@@ -48,6 +49,7 @@ CLASSES = (
     STIV_OT_morph_drag,
     *LAYOUT,
     *RESHAPING,
+    STIV_OT_popup,
     STIV_OT_separate,
     STIV_OT_let_pass,
     STIV_OT_let_pass_remove,

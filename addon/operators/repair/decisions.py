@@ -9,21 +9,22 @@ from ... import stiv_blender
 from ..reports import message_text
 from . import refusals
 from .passing import STIV_OT_let_pass
+from .popup import open_popup
 from .repair import STIV_OT_repair
 from .separate import STIV_OT_separate
 
 MAX_PAIRS = 5  # pairs of objects in the popup
 
 
-def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Exception) -> set[str]:
-    """Show the popup if objects intersect each other, or a modifier is the cause, and report the first line.
+def offer(context: bpy.types.Context, error: Exception) -> set[str]:
+    """Show the popup if objects intersect each other, or a modifier is the cause.
 
     Returns the operator's result; nothing without a window, or for any other error.
     """
     if bpy.app.background or context.window is None:
         return set()
     if not isinstance(error, stiv_blender.ObjectsIntersectError) or not error.objects:
-        return refusals.offer(operator, context, error)
+        return refusals.offer(error)
     lines = [message_text(stiv_blender.intersection_text(*pair)) for pair in error.objects]
 
     def draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -31,8 +32,7 @@ def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Excep
             menu.layout.label(text=line, translate=False)
         draw_ways_out(menu.layout)
 
-    context.window_manager.popup_menu(draw, title=lines[0], icon="ERROR")
-    operator.report({"INFO"}, lines[0])
+    open_popup(draw, lines[0])
     return {"CANCELLED"}
 
 

@@ -7,12 +7,13 @@ import bpy
 
 from ... import stiv_blender
 from ..reports import message_text
+from .popup import open_popup
 
 SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 
 
-def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Exception) -> set[str]:
-    """Show the popup if a modifier is the cause, and report the error.
+def offer(error: Exception) -> set[str]:
+    """Show the popup if a modifier is the cause.
 
     Returns the operator's result; nothing for any other error.
     """
@@ -25,8 +26,7 @@ def offer(operator: bpy.types.Operator, context: bpy.types.Context, error: Excep
         if ob is not None and modifier in ob.modifiers:
             draw_ways_out(menu.layout, ob, ob.modifiers[modifier])
 
-    context.window_manager.popup_menu(draw, title=text, icon="ERROR")
-    operator.report({"INFO"}, text)
+    open_popup(draw, text)
     return {"CANCELLED"}
 
 

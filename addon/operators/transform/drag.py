@@ -78,7 +78,7 @@ class DragOperator(Mixin):
         try:
             self._start(context, event)
         except Exception as error:
-            return decisions.offer(self, context, error) or report_error(self, error)
+            return decisions.offer(context, error) or report_error(self, error)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -225,7 +225,7 @@ class DragOperator(Mixin):
         drag = self._drag
         self._leave(context)
         if drag.error is not None:
-            return decisions.offer(self, context, drag.error) or report_error(self, drag.error)
+            return decisions.offer(context, drag.error) or report_error(self, drag.error)
         if drag.progress is Progress.CANCELLED or drag.transform is None:
             return {"CANCELLED"}
         try:
