@@ -14,7 +14,7 @@ from ..operators.reports import message_text
 from ..scene.edit_settings import edit_settings
 from ..translations import translate
 
-TIME_LIMIT = 60.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
+TIME_LIMIT = 20.0  # seconds for one correction, which Esc stops; then what is accepted so far is written
 
 
 @dataclass(frozen=True)
@@ -83,9 +83,11 @@ def _text(guarded: stiv_blender.GuardedResult) -> str:
         texts.append(_naming(translate("corrected {}"), guarded.corrected))
     if guarded.cut:
         texts.append(translate("blocked: the topology changes here"))
+    if guarded.stopped:
+        texts.append(translate("stopped after {} seconds, short of the goal").format(f"{TIME_LIMIT:g}"))
     if guarded.placed:
         texts.append(_naming(translate("put {} at the nearest free place"), guarded.placed))
-    return "; ".join(texts)
+    return "; ".join([*texts, *map(message_text, guarded.notes)])
 
 
 def _naming(text: str, *lists: Sequence[str]) -> str:

@@ -59,7 +59,7 @@ def left_out_texts(context: bpy.types.Context, edit: stiv_blender.Edit, *notes: 
     resets; and notes of the start.
     """
     reset_note = "" if context.scene.tool_settings.use_keyframe_insert_auto else edit.reset_note
-    return [message_text(note) for note in (edit.fold_note, edit.torn_seam_note, reset_note, *notes) if note]
+    return [message_text(note) for note in (*edit.untested_notes, reset_note, *notes) if note]
 
 
 def report_outcome(operator: bpy.types.Operator, outcome: str, failure: str, left_out: Sequence[str] = ()) -> None:

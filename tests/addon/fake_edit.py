@@ -71,7 +71,8 @@ class FakeEdit:
     touching: bool = False
     busy: bool = False
     start_digest = "start"
-    fold_note = torn_seam_note = reset_note = passenger_note = ""
+    untested_notes: tuple[str, ...] = ()
+    reset_note = passenger_note = ""
     controls = ()
 
     def standstill_note(self, result: Any) -> str:

@@ -55,7 +55,8 @@ class RecordingEdit:
     begun: Any = None
     summary = SimpleNamespace(warnings=())
     start_notes = ()
-    fold_note = torn_seam_note = reset_note = passenger_note = ""
+    untested_notes: tuple[str, ...] = ()
+    reset_note = passenger_note = ""
     standstill_note = staticmethod(lambda result: "")
     guard = SimpleNamespace(evaluations=("viewport",))
     carried = frozenset()

@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest, find_latest_steps
 
 
 def controls(number: int) -> np.ndarray:
@@ -39,6 +39,25 @@ def test_few_states_are_tested(count: int, data: st.DataObject) -> None:
     found = find_latest(states, lambda place: seen.append(place.call) or place.call < end)
     assert found is not None and found.call == end - 1
     assert len(seen) <= 2 * np.log2(count) + 3
+
+
+@given(st.lists(st.booleans(), max_size=40), st.integers(0, 12))
+def test_a_cancelled_search_ends_at_a_state_that_passes(holding: list[bool], turns: int) -> None:
+    """It tests one more state at most: the first one, if none has passed yet."""
+    states, seen = [AcceptedState(controls(k), k, 0) for k in range(len(holding))], []
+    steps = find_latest_steps(states, lambda place: seen.append(place.call) or holding[place.call])
+    found, tested = None, 0
+    try:
+        next(steps)
+        for turn in range(100):
+            tested = len(seen) if turn <= turns else tested
+            steps.send(turn >= turns)
+    except StopIteration as end:
+        found = end.value
+    passing = [number for number in seen if holding[number]]
+    assert (found.call if found else None) == max(passing, default=None)
+    assert tested == 0 or len(seen) <= tested + 1
+    assert found is not None or not any(holding[:1])
 
 
 def test_a_truncated_trail_keeps_the_calls_before_the_state() -> None:

@@ -2,14 +2,17 @@
 """Results of other tools are goals: the correction is free of intersections, and close to the result."""
 
 import math
+import time
+from dataclasses import replace
 from typing import Any
 
 import bmesh
 import bpy
 import pytest
-from building import add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, select, snapshot
+from building import add, add_cube, add_grid, add_lattice, add_modifier, edit_mode, evaluated, mesh, select, snapshot
 
 from stiv.blender import BlenderEdit, EditSettings, check_scene, compare, correct_after_tool, read_state
+from stiv.blender.edit.solver import EditSolver
 
 WALL = 3.0  # where its face is, along x
 
@@ -88,6 +91,32 @@ def test_an_object_turned_and_scaled_at_once_is_corrected() -> None:
     assert box.rotation_euler.z == pytest.approx(0.6, abs=1e-3)
     assert box.scale.x > 1.1
     assert evaluated(box)[:, 0].max() < WALL
+
+
+def test_each_solve_of_a_correction_has_only_the_time_that_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where Blender flips a quad into a post, so that the path is solved again, and where solves never settle."""
+    limit, budgets, solve = 2.0, [], EditSolver.solve
+
+    def recorded(solver: EditSolver, goal: Any, **limits: Any) -> Any:
+        budgets.append((time.monotonic(), limits.get("time_budget") or solver._settings.time_budget))
+        result = yield from solve(solver, goal, **limits)
+        return replace(result, status="budget") if goal is None else result
+
+    monkeypatch.setattr(EditSolver, "solve", recorded)
+    quad = add("Quad", mesh("Quad", [(-1, 0, 0), (0, -1, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2, 3)]))
+    add_cube("Post", (0, 0, 3.3), 1, scale=(0.02, 0.02, 3))
+    bpy.context.view_layer.update()
+
+    def raise_wings() -> None:
+        for number in (1, 3):
+            quad.data.vertices[number].co.z = 2
+        quad.data.update()
+
+    begin = time.monotonic()
+    outcome = corrected(raise_wings, time_budget=limit)
+    assert outcome.corrected and evaluated(quad)[[1, 3], 2].min() > 0.2
+    assert sum(started < begin + limit for started, _ in budgets) > 3
+    assert all(0 < budget <= max(begin + limit - started + 0.1, 0.5) for started, budget in budgets)
 
 
 def rotate_z(ob: Any, angle: float, pivot: tuple[float, float] = (0.0, 0.0)) -> None:

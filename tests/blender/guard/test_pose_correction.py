@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -12,6 +13,7 @@ import mathutils
 import numpy as np
 import pytest
 from building import add_cube, evaluated
+from torn_sheets import CROSSING, add_key, cutting_faces, named, torn_sheet
 
 from blend_fixtures.characters import make_character, select_bones
 from stiv.blender import AcceptedScene, EditSettings, check_scene, find_intersections, guard_result
@@ -62,6 +64,32 @@ def test_a_pose_into_a_box_is_corrected(arm: Any, mode: str) -> None:
     assert 15 < angle(arm) < 40 and box_pairs() == []
     if mode == "XYZ":
         assert sum(each != 0 for each in arm.rotation_euler) == 1  # only the changed angle responds
+
+
+@pytest.mark.parametrize("degrees", [20, 120])
+def test_folded_joints_are_named_as_in_edits(arm: Any, degrees: float) -> None:
+    """They are not tested, so that a result with such faces is not called free in silence."""
+    bpy.data.objects["Box"].hide_set(True)
+    bpy.context.view_layer.update()
+    forearm = arm.children[0]
+    axis = forearm.bone.matrix_local.to_3x3().inverted() @ mathutils.Vector((0, 0, -1))
+    turned = mathutils.Quaternion(axis, math.radians(degrees))
+    outcome = guarded(lambda: setattr(forearm, "rotation_quaternion", turned))
+    folded = len({each for pair in check_scene(bpy.context).pairs for each in (pair.first, pair.second)})
+    if degrees < 90:
+        assert outcome.notes == [] and folded == 0
+        return
+    found = re.fullmatch(r"Body: (\d+) faces at joints cut into each other", *outcome.notes)
+    assert found and 0 < int(found[1]) == pytest.approx(folded, abs=4)
+
+
+def test_faces_that_a_shape_key_cuts_at_a_torn_seam_are_named() -> None:
+    sheet = torn_sheet()
+    key = add_key(sheet, "Cross", CROSSING)
+    for value, count in ((0.0, 0), (1.0, 2)):
+        outcome = guarded(lambda value=value: setattr(key, "value", value))
+        assert cutting_faces(sheet) == count
+        assert [named(note) for note in outcome.notes] == ([count] if count else [])
 
 
 def test_a_free_pose_stays_to_the_last_bit(arm: Any) -> None:

@@ -12,6 +12,7 @@ from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
 from stiv.blender import BlenderEdit, EditSettings, check_scene, deadlines, read_surface
+from stiv.blender.edit import state_writer
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import read_scene
@@ -113,7 +114,7 @@ def test_a_drag_repeats_its_solves_only_within_its_time(monkeypatch: pytest.Monk
         edit.drag(shift(z=height))
     solved, solve, clock = [], EditSolver.solve, SimpleNamespace(monotonic=count(0, 100).__next__)
     monkeypatch.setattr(deadlines, "time", clock)
-    monkeypatch.setattr(EditSolver, "solve", lambda solver, goal: solved.append(goal) or solve(solver, goal))
+    monkeypatch.setattr(EditSolver, "solve", lambda solver, goal, **limits: solved.append(goal) or solve(solver, goal))
     report = edit.write()
     assert report.passed and report.result is not None and 0 < len(solved) <= 2
     assert check_scene(bpy.context).pairs == () and np.array_equal(solved[-1], edit.goal)
@@ -130,9 +131,36 @@ def test_a_write_shows_the_last_written_state_while_it_solves_again() -> None:
         while True:
             call = steps.send(outcome)
             shown.append(evaluated(quad)[WINGS, 2].max())
-            outcome = call.run()
+            outcome = None if call is None else call.run()
     assert len(shown) > 1 and set(shown) == {0.0}
     assert end.value.value.passed and evaluated(quad)[WINGS, 2].min() > 0.2
+
+
+def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_cancelled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Of a path whose end cannot be solved again. It may take seconds, in which the window draws the scene."""
+    found = {}
+    for is_cancelled in (False, True):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        quad = add_quad(0)
+        add_post()
+        edit = begin_with_wings(quad)
+        monkeypatch.setattr(EditSolver, "retry_with", lambda solver, flips, end: iter(()))
+        monkeypatch.setattr(state_writer, "nudged", lambda controls, last: iter(()))
+        for height in np.linspace(0.1, 2, 20):
+            edit.drag(shift(z=height))
+        steps, shown, outcome = edit.write_steps(), [], None
+        with pytest.raises(StopIteration) as end:
+            while True:
+                call = steps.send(outcome)
+                shown.append(evaluated(quad)[WINGS, 2].max())
+                outcome = is_cancelled if call is None else call.run()
+        assert len(shown) > 0 and set(shown) == {0.0}
+        assert end.value.value.message and check_scene(bpy.context).pairs == ()
+        found[is_cancelled] = len(shown), evaluated(quad)[WINGS, 2].min()
+    assert found[True][0] < found[False][0] and 0.89 < found[False][1] < 1.1
+    assert found[True][1] <= found[False][1]
 
 
 def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:

@@ -170,6 +170,11 @@ class BlenderEdit:
         return torn_seam_note(self.assembly, self._solver.excluded, self.surface, self._settings.threads)
 
     @property
+    def untested_notes(self) -> tuple[str, ...]:
+        """The messages on faces that the edit does not test, if they cut each other now."""
+        return tuple(note for note in (self.fold_note, self.torn_seam_note) if note)
+
+    @property
     def passenger_note(self) -> str:
         """The message on selected objects without a surface that cannot move along; "" without any."""
         return next((each.passenger_note for each in self.control_sets), "")
@@ -352,11 +357,11 @@ class BlenderEdit:
         """Solve for a goal of all controls, (m, 3)."""
         return run(self.drag_to_steps(goal), **execution)
 
-    def drag_to_steps(self, goal: Floats) -> Steps[stiv.EditResult]:
-        """Steps of `drag_to`."""
+    def drag_to_steps(self, goal: Floats, time_budget: float | None = None) -> Steps[stiv.EditResult]:
+        """Steps of `drag_to`; `time_budget` is that of stiv.EditSession.drag."""
         self._goal = goal
         with kept_twins():
-            return (yield from self._solver.solve(goal))
+            return (yield from self._solver.solve(goal, time_budget=time_budget))
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
@@ -425,13 +430,16 @@ class BlenderEdit:
         """
         return run(self.write_steps())
 
-    def write_steps(self) -> Steps[WriteReport]:
-        """Steps of `write`; the scene shows the last written state between them."""
+    def write_steps(self, end: float | None = None) -> Steps[WriteReport]:
+        """Steps of `write`; the scene shows the last written state between them.
+
+        end: the deadline of solves that are repeated; None for one time budget from now.
+        """
         if self._unguarded is not None:
             self._writer.write(self._unguarded)
             return WriteReport(True)
         with kept_twins():
-            return (yield from self._writer.write_accepted(self._goal))
+            return (yield from self._writer.write_accepted(self._goal, end))
 
     def take_state(self) -> TakenState | None:
         """Take the accepted state, so that the next solve can begin before it is written.

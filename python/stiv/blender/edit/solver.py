@@ -8,7 +8,7 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.deadlines import is_over
+from stiv.blender.deadlines import is_over, time_left
 from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
 from stiv.blender.edit.sessions import (
     axes_of_all,
@@ -18,7 +18,7 @@ from stiv.blender.edit.sessions import (
     stack_controls,
     weights_of_all,
 )
-from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
@@ -27,6 +27,7 @@ from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles,
 from stiv.blender.settings import EditSettings
 from stiv.task import Call, Steps, run
 
+LAST_DRAG_TIME = 0.5  # seconds in which the last drag is solved again after the deadline
 CALLS = 4  # of a session between two Jacobians of observed stacks
 
 
@@ -78,7 +79,7 @@ class EditSolver:
         return self._session
 
     def solve(self, goal: Floats | None, **limits: Any) -> Steps[stiv.EditResult]:
-        """Steps that drag to a goal, (m, 3), or settle (None); the limits are those of stiv.EditSession.drag."""
+        """Steps that drag to a goal, (m, 3), or settle (None); the limits of a drag are those of stiv.EditSession."""
         session = self.session
         if goal is None:
             return (yield from self._carry_out(None, Call(session.settle, session.start_settle)))
@@ -150,7 +151,7 @@ class EditSolver:
 
     def retry_with(self, flips: Sequence[FaceTriangles], end: float) -> Steps[bool]:
         """Steps that add flipped triangles, go back to the last state that is free with them, and repeat the later
-        calls from there; after the deadline `end`, only the last drag.
+        calls from there; after the deadline `end`, only the last drag, and that shortly.
 
         They return False, with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
@@ -162,7 +163,7 @@ class EditSolver:
             q = self.deformation.surface(state.controls)
             return has_only_excluded(self.excluded, assembly, q, self._settings.threads)
 
-        state = find_latest(self.trail.states(), is_free)
+        state = yield from find_latest_steps(self.trail.states(), is_free, end)
         if state is None:
             return False
         goal = self.trail.goal_at(state)
@@ -171,8 +172,10 @@ class EditSolver:
         calls = self.trail.truncate_at(state)
         last = max((number for number, call in enumerate(calls) if call.goal is not None), default=0)
         for number, call in enumerate(calls):
-            if number == last or not is_over(end):
-                yield from self.solve(call.goal)
+            is_late = is_over(end)
+            if number == last or not is_late:
+                budget = min(LAST_DRAG_TIME, self._settings.time_budget) if is_late else time_left(end)
+                yield from self.solve(call.goal, time_budget=budget or None)
         return True
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:

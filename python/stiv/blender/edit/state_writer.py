@@ -15,16 +15,17 @@ from stiv.blender.deadlines import deadline_after, is_over
 from stiv.blender.edit.results import merge_results
 from stiv.blender.edit.sessions import stack_controls, write_controls
 from stiv.blender.edit.solver import EditSolver
-from stiv.blender.edit.trail import AcceptedState, Trail, find_latest
+from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps, is_late
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.near_assembly import NearAssembly, near_assembly
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification, Verifier
-from stiv.task import Steps
+from stiv.task import Call, Steps
 
 MAX_HALVINGS = 8  # of a step that fails the test in Blender's evaluation
 MAX_FLIP_RETRIES = 4  # times that an edit is solved again because Blender flipped triangles of bent faces
+FALLING_BACK_TIME = 0.5  # seconds after the deadline in which an older state that passes may be found
 NUDGES = (2.0**-19, 2.0**-17)  # of the largest coordinate: 16 to 128 times its rounding in single precision
 
 
@@ -136,17 +137,20 @@ class StateWriter:
         self.write(shown.controls)
         return self._is_free_beside(shown.surface, shown.deviations)
 
-    def write_accepted(self, goal: Floats) -> Steps[WriteReport]:
+    def write_accepted(self, goal: Floats, end: float | None = None) -> Steps[WriteReport]:
         """Steps that write the accepted controls, test Blender's evaluation, and start a new trail to the same goal.
 
         Blender flips the diagonal of quads that bend far. If that causes intersections, both triangulations are kept
-        free from then on, and the path since the last write is solved again, within one time budget. If the test still
-        fails, the last state on the path that passes is written. Between steps, the scene shows the last written state.
-        Raise SceneChangedError if an object was removed or changed.
+        free from then on, and the path since the last write is solved again. If the test still fails, the last state on
+        the path that passes is written. Between steps, the scene shows the last written state. Raise SceneChangedError
+        if an object was removed or changed.
+
+        end: the deadline; None for one time budget from now. Then, or cancelled, they search no longer for the last
+        such state, and take the best that is known.
         """
+        end = deadline_after(self._settings.time_budget) if end is None else end
         verification = self._write_session()
         solved_again = False
-        end = deadline_after(self._settings.time_budget)
         for _ in range(MAX_FLIP_RETRIES):
             if verification.passed or (solved_again and is_over(end)):
                 break
@@ -156,19 +160,22 @@ class StateWriter:
             solved_again = True
             verification = self._write_session()
         result = merge_results([call.result for call in self._solver.trail.calls]) if solved_again else None
-        if not verification.passed and not self._passes_nudged(goal):
-            return self._fall_back(goal, verification, result)
+        if not verification.passed and not (yield from self._passes_nudged(goal, end)):
+            return (yield from self._fall_back(goal, verification, result, end))
         session = self._solver.session
         self._solver.trail = Trail(session.controls, goal)
         deviations = session.deviation_test(self.threads_beside)
         self._shown = ShownState(self._solver.trail, session.controls, session.surface, deviations)
         return WriteReport(True, result=result)
 
-    def _passes_nudged(self, goal: Floats) -> bool:
-        """Accept a state that differs by rounding, and write it; returns whether it passes the test."""
+    def _passes_nudged(self, goal: Floats, end: float) -> Steps[bool]:
+        """Steps that accept a state that differs by rounding, and write it; they return whether it passes the test."""
         session, last = self._solver.session, self._solver.trail.written
         for controls in nudged(session.controls, last):
-            session.edit(controls)
+            self.write(last)
+            if (yield from is_late(end)):
+                return False
+            yield Call(session.edit, session.start_edit, controls)
             if self._write_session().passed:
                 self._solver.restart_from(session.controls, goal)
                 return True
@@ -236,11 +243,15 @@ class StateWriter:
             self._check_beside = stiv.StepCheck(self._verifier_beside.assembly.surface, self.threads_beside)
         return self._check_beside.is_end_free(accepted, shown)
 
-    def _fall_back(self, goal: Floats, failure: Verification, result: stiv.EditResult | None) -> WriteReport:
+    def _fall_back(
+        self, goal: Floats, failure: Verification, result: stiv.EditResult | None, end: float
+    ) -> Steps[WriteReport]:
+        """Steps that write the last state of the trail that passes the test, or one on the step after it."""
         states = self._solver.trail.states()
-        state = find_latest(states[:-1], lambda each: self.write_and_verify(each.controls).passed)
+        end = max(end, deadline_after(FALLING_BACK_TIME))
+        state = yield from find_latest_steps(states[:-1], self._passes, end)
         if state is not None and state.call < 0 and failure.intersections:
-            state = self._bisect_step(goal, state, states[1])
+            state = yield from self._bisect_step(goal, state, states[1], end)
         controls = states[0].controls if state is None else state.controls
         self.write(controls)
         self._solver.restart_from(controls, goal)
@@ -248,12 +259,22 @@ class StateWriter:
         message = f"stopped early: {failure.message}" if on_the_way else failure.message
         return WriteReport(on_the_way, failure.intersections, message, result)
 
-    def _bisect_step(self, goal: Floats, start: AcceptedState, end: AcceptedState) -> AcceptedState:
-        """Bisect a step for a state that passes in Blender's evaluation; the start of the step if there is none."""
+    def _passes(self, state: AcceptedState) -> bool:
+        """Does a state pass the test in Blender's evaluation? The last written state is shown afterwards."""
+        passed = self.write_and_verify(state.controls).passed
+        self.write(self._solver.trail.written)
+        return passed
+
+    def _bisect_step(self, goal: Floats, first: AcceptedState, last: AcceptedState, end: float) -> Steps[AcceptedState]:
+        """Steps that bisect a step for a state that passes in Blender's evaluation; its first one if there is none."""
         for halvings in range(1, MAX_HALVINGS + 1):
-            self._solver.restart_from(start.controls, goal)
-            self._solver.session.edit(start.controls + (end.controls - start.controls) / 2**halvings)
-            between = self._solver.session.controls
-            if not np.array_equal(between, start.controls) and self.write_and_verify(between).passed:
-                return AcceptedState(between, end.call, end.step)
-        return start
+            if (yield from is_late(end)):
+                return first
+            self._solver.restart_from(first.controls, goal)
+            session = self._solver.session
+            between = first.controls + (last.controls - first.controls) / 2**halvings
+            yield Call(session.edit, session.start_edit, between)
+            state = AcceptedState(session.controls, last.call, last.step)
+            if not np.array_equal(state.controls, first.controls) and self._passes(state):
+                return state
+        return first

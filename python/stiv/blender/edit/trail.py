@@ -5,7 +5,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import stiv
+from stiv.blender.deadlines import is_over
 from stiv.blender.scene.arrays import Floats
+from stiv.task import Steps, run
 
 
 @dataclass(frozen=True)
@@ -71,22 +73,40 @@ def find_latest(states: Sequence[AcceptedState], holds: Callable[[AcceptedState]
     Searches backwards with doubling strides, then bisects. The property holds for the result, and may hold for
     later states. Returns None if it holds for no examined state.
     """
+    return run(find_latest_steps(states, holds))
+
+
+def find_latest_steps(
+    states: Sequence[AcceptedState], holds: Callable[[AcceptedState], bool], end: float = float("inf")
+) -> Steps[AcceptedState | None]:
+    """Steps of `find_latest`, one for each evaluation.
+
+    After the deadline `end`, or cancelled, they evaluate no state but the first one, and only if none held.
+    """
     failed, stride = len(states), 1
     while failed > 0:
         index = max(0, failed - stride)
         if holds(states[index]):
-            return _between(states, index, failed, holds)
+            return (yield from _between(states, index, failed, holds, end))
         failed, stride = index, 2 * stride
+        if (yield from is_late(end)):
+            stride = failed
     return None
 
 
 def _between(
-    states: Sequence[AcceptedState], held: int, failed: int, holds: Callable[[AcceptedState], bool]
-) -> AcceptedState:
-    while failed - held > 1:
+    states: Sequence[AcceptedState], held: int, failed: int, holds: Callable[[AcceptedState], bool], end: float
+) -> Steps[AcceptedState]:
+    while failed - held > 1 and not (yield from is_late(end)):
         middle = (held + failed) // 2
         if holds(states[middle]):
             held = middle
         else:
             failed = middle
     return states[held]
+
+
+def is_late(end: float) -> Steps[bool]:
+    """A step that gives a waiting caller a turn; returns whether the work is cancelled, or its deadline has passed."""
+    cancelled = yield None
+    return bool(cancelled) or is_over(end)

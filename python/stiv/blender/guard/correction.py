@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corrects the result of any tool: it is the goal of edits from the last accepted state."""
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -23,6 +22,7 @@ from stiv.blender.controls.participants import (
 )
 from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
+from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
@@ -39,6 +39,8 @@ STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
 WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
 TIME_LIMIT = 5.0  # seconds for one correction without a budget; then what is accepted so far is written
+SOLVING = 0.75  # of the time that is left: solves. The rest is for writing, which may solve again
+SETTLING_TIME = 0.5  # seconds of one call that settles; it is repeated while there is time
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,9 @@ class ToolCorrection:
         names: objects that the tool changed.
         blocking: objects in contact.
         cut: did it stop where the topology changes?
+        stopped: did it end at the deadline, short of the tool's result?
         message: why the correction is incomplete; "" if it is complete.
+        notes: about faces that no edit tests and that cut each other now, see `BlenderEdit.untested_notes`.
         deformers: changed objects without a surface that may deform others. They are not corrected, so the scene has to
             be tested.
     """
@@ -61,6 +65,8 @@ class ToolCorrection:
     message: str = ""
     deformers: tuple[str, ...] = ()
     cut: bool = False
+    stopped: bool = False
+    notes: tuple[str, ...] = ()
 
 
 def correct_after_tool(
@@ -79,12 +85,16 @@ def correct_after_tool_steps(
     settings: EditSettings,
     accepted: SceneState,
     changes: Changes,
+    end: float | None = None,
 ) -> Steps[ToolCorrection]:
     """Steps of `correct_after_tool`.
 
     Between steps, the scene shows the accepted state of the changed objects. Steps that are closed leave the tool's
     result; those ended by Left leave what the scene shows.
+
+    end: the deadline; None for the time budget of the settings from now.
     """
+    end = correction_deadline(settings) if end is None else end
     chosen = [change for change in changes.changes if _participates(context, change, settings)]
     names = tuple(name for change in chosen if settings.cage_of(name := change.reference.name) == name)
     deformers = tuple(
@@ -95,9 +105,9 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(context, settings, wanted, names)
+        outcomes = yield from _passes(context, settings, wanted, names, end)
         if all(outcome.reached for outcome in outcomes) and _is_tool_result_free(context, wanted, chosen, outcomes):
-            return ToolCorrection(False, names, deformers=deformers)
+            return ToolCorrection(False, names, deformers=deformers, notes=_notes_of(outcomes))
     except Left:
         raise
     except BaseException:
@@ -111,8 +121,13 @@ def correct_after_tool_steps(
         messages += [outcome.edit.reset_note for outcome in outcomes]
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
     message = next(filter(None, messages), "")
-    cut = any(outcome.cut for outcome in outcomes)
-    return ToolCorrection(True, names, tuple(blocking), message, deformers, cut)
+    cut, stopped = (any(flags) for flags in zip(*((each.cut, each.stopped) for each in outcomes), strict=True))
+    return ToolCorrection(True, names, tuple(blocking), message, deformers, cut, stopped, _notes_of(outcomes))
+
+
+def correction_deadline(settings: EditSettings) -> float:
+    """The deadline of a correction that begins now."""
+    return deadline_after(settings.time_budget or TIME_LIMIT)
 
 
 @dataclass(frozen=True)
@@ -125,6 +140,7 @@ class Outcome:
         blocking: objects in contact.
         message: why the result could not be written, or notes; may be "".
         cut: did it stop where the topology changes?
+        stopped: did it end at the deadline, short of its goal?
     """
 
     edit: BlenderEdit
@@ -132,6 +148,11 @@ class Outcome:
     blocking: tuple[str, ...]
     message: str
     cut: bool
+    stopped: bool
+
+
+def _notes_of(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(note for outcome in outcomes for note in outcome.edit.untested_notes))
 
 
 def _participates(context: bpy.types.Context, change: Change, settings: EditSettings) -> bool:
@@ -183,11 +204,12 @@ def _is_tool_result_free(
 
 
 def _passes(
-    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str]
+    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], end: float
 ) -> Steps[list[Outcome]]:
-    """Split changes that one edit cannot make into passes: rotation before scale, parents before children."""
-    limited = replace(settings, time_budget=settings.time_budget or TIME_LIMIT)
-    deadline = time.monotonic() + limited.time_budget
+    """Split changes that one edit cannot make into passes: rotation before scale, parents before children.
+
+    After the deadline, no pass begins; the last outcome has then not reached its goal.
+    """
     done: set[tuple[int, str]] = set()
     outcomes: list[Outcome] = []
     while True:
@@ -199,11 +221,13 @@ def _passes(
         now = _outermost(remaining, wanted)
         if not now:
             return outcomes
+        if outcomes and is_over(end):
+            return [*outcomes[:-1], replace(outcomes[-1], reached=False, stopped=True)]
         kind = "scale" if all(_kind(change, done) == "scale" for change in now if change.placed) else "rotate"
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {_operation(change, done) for change in now}
         goals = _ToolGoals.between(present, wanted, now)
-        outcomes.append((yield from _edit(context, limited, goals, kind, deadline)))
+        outcomes.append((yield from _edit(context, settings, goals, kind, end)))
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
@@ -258,39 +282,48 @@ def _numbered(changes: Sequence[Change]) -> Iterator[tuple[Change, int]]:
 
 
 def _edit(
-    context: bpy.types.Context, settings: EditSettings, goals: _ToolGoals, kind: str, deadline: float
+    context: bpy.types.Context, settings: EditSettings, goals: _ToolGoals, kind: str, end: float
 ) -> Steps[Outcome]:
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
     edit = yield from BlenderEdit.begin_with_steps(
-        context, settings, kind, _participants(context, settings, goals.changes),
+        context, correction_settings(settings), kind, _participants(context, settings, goals.changes),
         lambda control_set: _with_response(control_set, goals, settings),
     )  # fmt: skip
     goal = stack_controls([_goal_of(each, goals) for each in edit.control_sets])
-    return (yield from move_to_goal(edit, goal, settings, deadline))
+    return (yield from move_to_goal(edit, goal, end))
 
 
-def move_to_goal(
-    edit: BlenderEdit, goal: Floats, settings: EditSettings, deadline: float | None = None
-) -> Steps[Outcome]:
-    """Steps of an edit toward a goal of all controls, (m, 3), until a deadline, in steps of a drag; and its write."""
-    end = time.monotonic() + (settings.time_budget or TIME_LIMIT) if deadline is None else deadline
+def correction_settings(settings: EditSettings) -> EditSettings:
+    """Settings of an edit for `move_to_goal`, which limits the time of all calls but those that settle."""
+    return replace(settings, time_budget=SETTLING_TIME)
+
+
+def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
+    """Steps of an edit toward a goal of all controls, (m, 3), in steps of a drag, and its write.
+
+    The edit has `correction_settings`. The deadline `end` holds for solves; what is accepted then is written.
+    """
+    solving_end = deadline_after(SOLVING * time_left(end))
     steps = _steps_to(edit, goal)
     results = []
     for number, step in enumerate(steps):
         yield number / len(steps)
-        results.append((yield from edit.drag_to_steps(step)))
-        if results[-1].status == "budget" or time.monotonic() > end:
+        results.append((yield from edit.drag_to_steps(step, time_left(solving_end))))
+        if results[-1].status == "budget" or is_over(solving_end):
             break
     reached = all(result.status in ("reached", "unchanged") for result in results)
-    if not reached and time.monotonic() < end:
+    while not reached and not is_over(solving_end):
         results.append((yield from edit.settle_steps()))
+        if results[-1].status != "budget":
+            break
     yield None
-    report = yield from edit.write_steps()
+    report = yield from edit.write_steps(end)
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
     cut = any(map(is_cut_by_topology, results[-1:]))
-    return Outcome(edit, reached and report.passed and report.result is None, blocking, message, cut)
+    is_reached = reached and report.passed and report.result is None
+    return Outcome(edit, is_reached, blocking, message, cut, not reached and is_over(solving_end))
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:

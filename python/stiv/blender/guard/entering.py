@@ -86,10 +86,11 @@ def correct_copies(
     settings: EditSettings,
     accepted: AcceptedScene,
     originals: Mapping[int, int],
+    end: float,
 ) -> Steps[ToolCorrection]:
     """Steps that move copies from the places of their originals toward their own. They pass through all originals.
 
-    Raises InputError and SceneChangedError, with nothing changed.
+    end: the deadline. Raises InputError and SceneChangedError, with nothing changed.
     """
     present = read_state(context)
     base = dict(present)
@@ -104,7 +105,7 @@ def correct_copies(
     left_out = accepted.known.left_out(settings, names)
     through = tuple((copy, original) for copy in names for original in names.values())
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, *through))
-    return (yield from correct_after_tool_steps(context, left_out, base, compare(base, present)))
+    return (yield from correct_after_tool_steps(context, left_out, base, compare(base, present), end))
 
 
 def correct_extrusion(
@@ -112,10 +113,11 @@ def correct_extrusion(
     settings: EditSettings,
     accepted: AcceptedScene,
     reference: ObjectReference,
+    end: float,
 ) -> Steps[ToolCorrection | None]:
     """Steps that pull an extrusion out again up to where it is blocked; None if the new vertices were not extruded.
 
-    Raises InputError and SceneChangedError, with nothing changed.
+    end: the deadline. Raises InputError and SceneChangedError, with nothing changed.
     """
     before, after = accepted.state[reference.session_uid], read_object(reference.find())
     if before.points is None or after.points is None or reference.find().type != "MESH":
@@ -137,7 +139,7 @@ def correct_extrusion(
             base = {**read_state(context), reference.session_uid: start}
             change = Change(reference, moved=False, turned=False, scaled=False, points=moved)
             left_out = accepted.known.left_out(settings)
-            return (yield from correct_after_tool_steps(context, left_out, base, Changes((change,))))
+            return (yield from correct_after_tool_steps(context, left_out, base, Changes((change,)), end))
     return None
 
 
@@ -154,11 +156,12 @@ def correct_part(
     reference: ObjectReference,
     part: Flags,
     origins: Singles,
+    end: float,
 ) -> Steps[bool | None]:
     """Steps that move components of a mesh from their vertices' origins, (k, 3), toward their place.
 
     Returns whether the place changed; None if the tool did not translate them from a free place. They move as a rigid
-    body and pass through the rest of their object. Raises InputError and SceneChangedError.
+    body and pass through the rest of their object. end: the deadline. Raises InputError and SceneChangedError.
     """
     after = read_object(reference.find())
     assert after.points is not None
@@ -168,7 +171,7 @@ def correct_part(
     way = after.world[:3, :3] @ ways.mean(axis=0)
     left_out = known.left_out(settings)
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, (reference.name, reference.name)))
-    made = yield from slide_part(context, left_out, {reference.name: part}, way)
+    made = yield from slide_part(context, left_out, {reference.name: part}, way, end)
     if made is None:
         return None
     if np.linalg.norm(made - way) <= ROUNDING * np.linalg.norm(way):

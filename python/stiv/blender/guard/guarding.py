@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
@@ -11,9 +11,10 @@ import bpy
 import numpy as np
 
 from stiv import InputError, StartIntersectsError
+from stiv.blender.deadlines import is_over
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
-from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
+from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps, correction_deadline
 from stiv.blender.guard.entering import (
     correct_copies,
     correct_extrusion,
@@ -45,6 +46,8 @@ class GuardedResult:
         corrected, placed: names of the objects that an edit corrected, and of new ones put at the nearest free place.
         blocking: names of the objects in contact.
         cut: did a correction stop where the topology changes?
+        stopped: did a correction end at the deadline, short of the tool's result?
+        notes: about faces that no correction tests and that cut each other now.
         pairs: the intersections that are left, without excluded pairs.
         reason: why a change was not corrected; "" otherwise.
         deformers: see `ToolCorrection`.
@@ -55,14 +58,19 @@ class GuardedResult:
     placed: list[str] = field(default_factory=list)
     blocking: list[str] = field(default_factory=list)
     cut: bool = False
+    stopped: bool = False
+    notes: list[str] = field(default_factory=list)
     pairs: tuple[FacePair, ...] = ()
     reason: str = ""
     deformers: tuple[str, ...] = ()
 
     def add(self, outcome: ToolCorrection | None) -> None:
         """Add a correction."""
-        if outcome is not None and outcome.corrected:
-            self.wrote, self.cut = True, self.cut or outcome.cut
+        if outcome is None:
+            return
+        self.notes += [note for note in outcome.notes if note not in self.notes]
+        if outcome.corrected:
+            self.wrote, self.cut, self.stopped = True, self.cut or outcome.cut, self.stopped or outcome.stopped
             self.corrected += [name for name in outcome.names if name not in self.corrected]
             self.blocking += [name for name in outcome.blocking if name not in self.blocking]
 
@@ -79,15 +87,16 @@ def guard_result(context: bpy.types.Context, settings: EditSettings, accepted: A
 def guard_result_steps(
     context: bpy.types.Context, settings: EditSettings, accepted: AcceptedScene
 ) -> Steps[GuardedResult]:
-    """Steps of `guard_result`.
+    """Steps of `guard_result`, which end soon after the time budget of the settings.
 
     Between steps, the scene may show the accepted state. Steps that are closed leave the tool's result. Those ended by
     Left do so only if objects were added or changed their structure; `revert` restores all others.
     """
+    end = correction_deadline(settings)
     present = read_state(context)
     changes = compare(accepted.state, present)
     try:
-        return (yield from _guard(context, settings, accepted, present, changes))
+        return (yield from _guard(context, settings, accepted, present, changes, end))
     except (GeneratorExit, Left) as end:
         if changes.unsupported or not isinstance(end, Left):
             with suppress(InputError, SceneChangedError):
@@ -101,20 +110,21 @@ def _guard(
     accepted: AcceptedScene,
     present: SceneState,
     changes: Changes,
+    end: float,
 ) -> Steps[GuardedResult]:
     result = GuardedResult(reason=changes.unsupported)
     start = accepted.state
     if changes.unsupported:
         result.pairs = find_intersections(context, settings)
         yield None
-        yield from _guard_new_geometry(context, settings, accepted, changes, result)
+        yield from _guard_new_geometry(context, settings, accepted, changes, result, end)
         start = _start_of(changes, accepted.state, read_state(context))
     if changes.posed and changes.changes:
         _restore_poses(context, accepted.state, changes.posed)
-    if changes.changes and not (yield from _guard_overlapping_part(context, settings, accepted, changes, result)):
-        yield from _guard_moved(context, settings, accepted, start, changes, result)
+    if changes.changes and not (yield from _guard_overlapping_part(context, settings, accepted, changes, result, end)):
+        yield from _guard_moved(context, settings, accepted, start, changes, result, end)
     if changes.posed:
-        yield from _guard_poses(context, settings, accepted, present, changes.posed, result)
+        yield from _guard_poses(context, settings, accepted, present, changes.posed, result, end)
     tested = changes.unsupported and not changes.changes and not result.wrote
     followed = changes.changes or changes.posed
     if not tested and (not followed or result.reason or result.deformers or accepted.known.pairs):
@@ -135,6 +145,7 @@ def _guard_overlapping_part(
     accepted: AcceptedScene,
     changes: Changes,
     result: GuardedResult,
+    end: float,
 ) -> Steps[bool]:
     """Steps that correct a translation of whole components of a mesh that intersects itself.
 
@@ -150,7 +161,7 @@ def _guard_overlapping_part(
     ob = reference.find()
     if ob.type != "MESH" or joins_others(read_edges(ob.data), part):
         return False
-    corrected = yield from correct_part(context, settings, accepted.known, reference, part, before[part])
+    corrected = yield from correct_part(context, settings, accepted.known, reference, part, before[part], end)
     if corrected:
         result.wrote = True
         result.corrected.append(reference.name)
@@ -164,11 +175,12 @@ def _guard_moved(
     start: SceneState,
     changes: Changes,
     result: GuardedResult,
+    end: float,
 ) -> Steps[None]:
     try:
         left_out = accepted.known.left_out(settings)
         supported = replace(changes, unsupported="")
-        outcome = yield from correct_after_tool_steps(context, left_out, start, supported)
+        outcome = yield from correct_after_tool_steps(context, left_out, start, supported, end)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
         return
@@ -190,11 +202,12 @@ def _guard_poses(
     present: SceneState,
     posed: Sequence[ObjectReference],
     result: GuardedResult,
+    end: float,
 ) -> Steps[None]:
     """Correct poses and values of shape keys, from the accepted ones toward those of the tool."""
     left_out = accepted.known.left_out(settings)
     try:
-        outcome = yield from correct_poses_steps(context, left_out, accepted.state, present, posed)
+        outcome = yield from correct_poses_steps(context, left_out, accepted.state, present, posed, end)
     except (InputError, SceneChangedError) as error:
         result.reason = result.reason or str(error)
         return
@@ -207,20 +220,33 @@ def _guard_new_geometry(
     accepted: AcceptedScene,
     changes: Changes,
     result: GuardedResult,
+    end: float,
 ) -> Steps[None]:
     """Correct extrusions and new objects that intersect, by the pairs of the result."""
     fresh = accepted.known.fresh(result.pairs)
     names = {name for pair in fresh for name in object_pair(pair)}
     created = {each.name: each for each in changes.added if each.session_uid not in accepted.objects}
     try:
-        for reference in changes.rebuilt:
-            if reference.name in names and reference.find().type == "MESH":
-                yield from _guard_rebuilt(context, settings, accepted, changes, reference, result)
+        for reference in _users_of_meshes(changes.rebuilt, names):
+            yield None
+            if is_over(end):
+                break
+            yield from _guard_rebuilt(context, settings, accepted, changes, reference, result, end)
         if touches_others(fresh, created):
             entering = [created[name].session_uid for name in sorted(names & created.keys())]
-            yield from _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result)
+            yield from _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result, end)
     except (InputError, SceneChangedError) as error:
         result.reason = str(error)
+
+
+def _users_of_meshes(references: Sequence[ObjectReference], names: Collection[str]) -> list[ObjectReference]:
+    """The first named user of each mesh: its correction is that of all."""
+    found: dict[int, ObjectReference] = {}
+    for reference in references:
+        ob = reference.find()
+        if reference.name in names and ob.type == "MESH":
+            found.setdefault(ob.data.session_uid, reference)
+    return list(found.values())
 
 
 def _guard_rebuilt(
@@ -230,12 +256,13 @@ def _guard_rebuilt(
     changes: Changes,
     reference: ObjectReference,
     result: GuardedResult,
+    end: float,
 ) -> Steps[None]:
     """Correct an extrusion, or a part that was added and did not come from an object that is gone, as in Join."""
     before, after = accepted.state[reference.session_uid], read_object(reference.find())
     added = None if changes.removed else find_new_part(before, after, read_edges(reference.find().data))
     if added is None:
-        result.add((yield from correct_extrusion(context, settings, accepted, reference)))
+        result.add((yield from correct_extrusion(context, settings, accepted, reference, end)))
         return
     source, known, corrected = find_copied(accepted, reference, added), accepted.known, False
     if source is not None and after.points is not None:
@@ -243,7 +270,7 @@ def _guard_rebuilt(
         if np.array_equal(after.points[added], origins):
             result.reason = f"{reference.name}: the copy is in the place of its source; move it"
             return
-        corrected = bool((yield from correct_part(context, settings, known, reference, added, origins)))
+        corrected = bool((yield from correct_part(context, settings, known, reference, added, origins, end)))
     is_left = reference.name in fresh_objects(context, settings, known)
     placed = is_left and (yield from place_part_freely(context, settings, known, reference, added))
     result.wrote |= corrected or placed
@@ -259,6 +286,7 @@ def _guard_new_objects(
     entering: list[int],
     fresh: Sequence[FacePair],
     result: GuardedResult,
+    end: float,
 ) -> Steps[None]:
     """Correct copies from the places of their originals, then place new objects that still intersect.
 
@@ -277,7 +305,7 @@ def _guard_new_objects(
     blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
     if originals and touches_others(blocking, created):
         with suppress(StartIntersectsError):  # what the copy passes there, its original does not
-            result.add((yield from correct_copies(context, settings, accepted, originals)))
+            result.add((yield from correct_copies(context, settings, accepted, originals, end)))
         yield None
         if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
             return

@@ -9,7 +9,9 @@ import bpy
 import numpy as np
 
 import stiv
+from stiv.blender.deadlines import is_over, time_left
 from stiv.blender.edit.sessions import body_separations, open_session
+from stiv.blender.guard.correction import correction_settings
 from stiv.blender.guard.new_parts import split_parts
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.scene.assembly import assemble
@@ -23,11 +25,12 @@ MAX_STEPS = 200
 
 
 def slide_part(
-    context: bpy.types.Context, settings: EditSettings, parts: Mapping[str, Flags], way: Floats
+    context: bpy.types.Context, settings: EditSettings, parts: Mapping[str, Flags], way: Floats, end: float
 ) -> Steps[Floats | None]:
     """Steps to the part, (3,), of a translation that new parts can make toward their place; None without a free start.
 
-    parts: flags of the cage's vertices, by object. way: the translation from their source, (3,). Raises InputError.
+    parts: flags of the cage's vertices, by object. way: the translation from their source, (3,). end: the
+    deadline. Raises InputError.
     """
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
     split = split_parts(scene.meshes, parts)
@@ -41,7 +44,7 @@ def slide_part(
     deformation = stiv.concatenate([(stiv.rigid(start[rows]), rows)], start)
     controls = stiv.rigid_rest_controls(start[rows])
     options = stiv.EditOptions(
-        **settings.shared(),
+        **correction_settings(settings).shared(),
         pair_separations=body_separations(assembly, settings),
         weights=np.array([1.0, 0.0]),
     )
@@ -54,7 +57,10 @@ def slide_part(
     size = float(np.linalg.norm(np.ptp(start[rows], axis=0)))
     count = int(np.clip(np.ceil(np.linalg.norm(way) / (STEP * size)), 1, MAX_STEPS)) if size > 0 else 1
     for fraction in np.arange(1, count + 1) / count:
-        yield Call(session.drag, session.start_drag, controls + [fraction * way, np.zeros(3)])
+        goal = controls + [fraction * way, np.zeros(3)]
+        yield Call(session.drag, session.start_drag, goal, time_budget=time_left(end))
+        if is_over(end):
+            break
     yield Call(session.settle, session.start_settle)
     moved: Floats = session.controls[0] - controls[0]
     return moved

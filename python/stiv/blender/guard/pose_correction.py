@@ -9,12 +9,14 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
+import stiv
 from stiv.blender.controls.bone_channels import BoneChannels, StoredChannels
 from stiv.blender.controls.bone_set import check_rig
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.participants import find_clothes
+from stiv.blender.deadlines import is_over
 from stiv.blender.edit.blender_edit import BlenderEdit
-from stiv.blender.guard.correction import ToolCorrection, move_to_goal
+from stiv.blender.guard.correction import ToolCorrection, correction_deadline, correction_settings, move_to_goal
 from stiv.blender.guard.scene_state import ObjectState, PoseState, SceneState
 from stiv.blender.morphing.key_sliders import find_sliders
 from stiv.blender.morphing.morph import limits_toward
@@ -24,6 +26,8 @@ from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 from stiv.task import Left, Steps
 
+MORPHING_TIME = 0.25  # seconds of one call that moves sliders; it is repeated while there is time
+
 
 def correct_poses_steps(
     context: bpy.types.Context,
@@ -31,19 +35,23 @@ def correct_poses_steps(
     accepted: SceneState,
     wanted: SceneState,
     posed: Sequence[ObjectReference],
+    end: float | None = None,
 ) -> Steps[ToolCorrection]:
     """Edit from accepted poses and values of shape keys toward the wanted ones, and write the result.
 
     posed: the objects that differ. Between steps, the scene shows accepted ones. A result that needs no correction
     stays as it is exactly. Channels and values that drivers set are left to them. Raises InputError,
     StartIntersectsError and SceneChangedError; the tool's result then remains.
+
+    end: the deadline; None for the time budget of the settings from now.
     """
+    end = correction_deadline(settings) if end is None else end
     pairs = [(accepted[each.session_uid], wanted[each.session_uid]) for each in posed]
     try:
         _restore(context, [former for former, _ in pairs])
-        bones = yield from _correct_bones(context, settings, pairs)
+        bones = yield from _correct_bones(context, settings, pairs, end)
         yield None
-        keys = _correct_keys(context, settings, pairs)
+        keys = yield from _correct_keys(context, settings, pairs, end)
     except Left:
         raise
     except BaseException:
@@ -53,7 +61,9 @@ def correct_poses_steps(
     blocking = {name for each in found for name in each.blocking}
     names = tuple(state.reference.name for _, state in pairs)
     message = next((each.message for each in found if each.message), "")
-    return ToolCorrection(bool(found), names, tuple(sorted(blocking)), message)
+    notes = tuple(note for each in (bones, keys) if each is not None for note in each.notes)
+    cut, stopped = any(each.cut for each in found), any(each.stopped for each in found)
+    return ToolCorrection(bool(found), names, tuple(sorted(blocking)), message, (), cut, stopped, notes)
 
 
 def _restore(context: bpy.types.Context, states: Sequence[ObjectState]) -> None:
@@ -63,7 +73,7 @@ def _restore(context: bpy.types.Context, states: Sequence[ObjectState]) -> None:
 
 
 def _correct_bones(
-    context: bpy.types.Context, settings: EditSettings, pairs: Sequence[tuple[ObjectState, ObjectState]]
+    context: bpy.types.Context, settings: EditSettings, pairs: Sequence[tuple[ObjectState, ObjectState]], end: float
 ) -> Steps[ToolCorrection | None]:
     """Steps that pose all changed bones at once; None if none changed."""
     rigs = [(wanted, bones) for former, wanted in pairs if (bones := _changed_bones(former, wanted))]
@@ -73,21 +83,24 @@ def _correct_bones(
         check_rig(wanted.reference.find())
     participants = [Participant(wanted.reference, "bones", True, tuple(b for b, _ in bones)) for wanted, bones in rigs]
     clothes = find_clothes(context, settings)
-    edit = yield from BlenderEdit.begin_with_steps(context, settings, "rotate", [*participants, *clothes])
+    limited = correction_settings(settings)
+    edit = yield from BlenderEdit.begin_with_steps(context, limited, "rotate", [*participants, *clothes])
     start, goal = edit.controls, edit.controls.copy()
     scalars = np.concatenate([channels[bone.free] for _, bones in rigs for bone, channels in bones])
     goal[: len(scalars), 0] = scalars
-    outcome = yield from move_to_goal(edit, goal, settings)
+    outcome = yield from move_to_goal(edit, goal, end)
     if outcome.reached and np.array_equal(edit.controls[len(scalars) :], start[len(scalars) :]):
         solved = [replace(wanted, pose=PoseState.read(wanted.reference.find())) for wanted, _ in rigs]
         _restore(context, [replace(wanted, pose=replace(wanted.pose, keys=())) for wanted, _ in rigs])
         if edit.is_shown():
-            return ToolCorrection(False, ())
+            return ToolCorrection(False, (), notes=edit.untested_notes)
         _restore(context, solved)
     if context.scene.tool_settings.use_keyframe_insert_auto:
         edit.insert_keyframes(context)
     names = tuple(wanted.reference.name for wanted, _ in rigs)
-    return ToolCorrection(True, names, outcome.blocking, outcome.message)
+    return ToolCorrection(
+        True, names, outcome.blocking, outcome.message, (), outcome.cut, outcome.stopped, edit.untested_notes
+    )
 
 
 def _changed_bones(former: ObjectState, wanted: ObjectState) -> list[tuple[BoneChannels, Floats]]:
@@ -113,22 +126,44 @@ def _driven_paths(owner: bpy.types.ID) -> set[str]:
 
 
 def _correct_keys(
-    context: bpy.types.Context, settings: EditSettings, pairs: Sequence[tuple[ObjectState, ObjectState]]
-) -> ToolCorrection | None:
-    """Move all changed values of shape keys at once; None if none changed."""
+    context: bpy.types.Context, settings: EditSettings, pairs: Sequence[tuple[ObjectState, ObjectState]], end: float
+) -> Steps[ToolCorrection | None]:
+    """Steps that move all changed values of shape keys at once; None if none changed."""
     values = _changed_values(pairs)
     if not values:
         return None
     sliders, goals, given = find_sliders(values, False)
     wanted, is_given = np.array(goals), np.array(given)
-    edit = MorphEdit(context, settings, sliders, is_given, *limits_toward(sliders, wanted, is_given))
-    result, _ = edit.advance(wanted)
-    settled = edit.settle()
-    message = edit.show()
+    limited = replace(settings, time_budget=MORPHING_TIME)
+    edit = MorphEdit(context, limited, sliders, is_given, *limits_toward(sliders, wanted, is_given))
+    result, message = yield from _move_sliders(edit, wanted, end)
+    notes = (edit.torn_seam_note,) if edit.torn_seam_note else ()
     if np.array_equal(edit.values, wanted) and not edit.has_moved_clothes:
-        return ToolCorrection(False, ())
+        return ToolCorrection(False, (), notes=notes)
     edit.insert_keyframes(context)
-    return ToolCorrection(True, tuple(values), tuple(result.blocking or settled.blocking), message)
+    is_stopped = not message and is_over(end)
+    return ToolCorrection(True, tuple(values), tuple(result.blocking), message, stopped=is_stopped, notes=notes)
+
+
+def _move_sliders(edit: MorphEdit, wanted: Floats, end: float) -> Steps[tuple[stiv.EditResult, str]]:
+    """Steps that move sliders toward their values, (k,), until a deadline.
+
+    They return the last result with contacts, and why the values of the last call are not shown, or "". Between steps,
+    the scene shows values that passed the test.
+    """
+    while True:
+        result, is_done = edit.advance(wanted, MORPHING_TIME)
+        message = edit.show()
+        yield None
+        if is_done or message or is_over(end):
+            break
+    while not message and not is_over(end):
+        settled = edit.settle()
+        result, message = (settled if settled.blocking else result), edit.show()
+        yield None
+        if settled.status != "budget":
+            break
+    return result, message
 
 
 def _changed_values(pairs: Sequence[tuple[ObjectState, ObjectState]]) -> dict[str, dict[str, float]]:
