@@ -7,7 +7,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, mesh
+from building import add, add_cube, add_grid, add_modifier, edit_mode, mesh, select
+from torn_sheets import CROSSING, PARTING, add_key, cutting_faces, torn_sheet
 
 from stiv.blender.scripts.blend_files import open_blend, save_blend
 from stiv.blender.verify.frame_check import check_frames, set_frame
@@ -160,3 +161,45 @@ def test_seams_of_a_shape_stay_closed(tmp_path: Path) -> None:
     _, same = np.unique(places, axis=0, return_inverse=True)
     for frame in range(1, 5):
         assert len(np.unique(positions("Unwelded", frame), axis=0)) == same.max() + 1 == 25
+
+
+@pytest.mark.parametrize("moved", [CROSSING, PARTING])
+def test_a_seam_that_opens_during_the_animation_is_named_with_the_way_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], moved: dict
+) -> None:
+    """Its faces are tested, so nothing has to be said about them at the end: the touching ones are refused."""
+    sheet = torn_sheet()
+    key(add_key(sheet, "Open", moved), "value", [0.0, 0.0, 0.5, 1.0])
+    set_frame(bpy.context.scene, 4)
+    assert cutting_faces(sheet) == (2 if moved is CROSSING else 0)
+    resolved(tmp_path, 4, code=4)
+    said = "Sheet: a seam opens during the animation, and its faces touch here; use Merge by Distance"
+    assert said in capsys.readouterr().out and not (tmp_path / "out.blend").exists()
+    add_cube("Inside", (0.5, 0.5, 0), 0.2)
+    resolved(tmp_path, 4, code=4)
+    assert said not in capsys.readouterr().out  # that is not the only reason
+
+
+def test_keyframes_that_cross_a_torn_seam_are_corrected_until_nothing_cuts(tmp_path: Path) -> None:
+    """Bones that move the copies apart: faces there are tested against each other, unlike in an edit."""
+    sheet = torn_sheet()
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(rig)
+    select(rig)
+    edit_mode(rig)
+    for name, x in (("A", -0.5), ("B", 0.5)):
+        bone = rig.data.edit_bones.new(name)
+        bone.head, bone.tail = (x, 0.5, 0), (x, 1.5, 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for name, vertices in (("A", range(4)), ("B", range(4, 8))):
+        sheet.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
+    add_modifier(sheet, "ARMATURE", object=rig)
+    bone = rig.pose.bones["B"]
+    bone.rotation_mode = "XYZ"
+    for frame, x, z, angle in ((1, 0.2, 0, 0), (4, 0.2, 0, 0), (5, 0, 0, 0.4), (6, -0.1, 0, 0.4), (7, 0.2, 0, 0)):
+        bone.location, bone.rotation_euler = (x, 0, z), (angle, 0, 0)
+        bone.keyframe_insert("location", frame=frame)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    assert any("Sheet" in each for each in findings(7))
+    resolved(tmp_path, 7, "--write", "rig", "--joint-region", "0")
+    assert findings(7) == []

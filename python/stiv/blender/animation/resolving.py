@@ -14,7 +14,7 @@ from stiv.blender.animation.controls import MovingSet, make_moving_sets
 from stiv.blender.animation.tracks import Track, check_movable
 from stiv.blender.edit.sessions import intersects_only_in_render, storage_frames
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.assembly import Assembly, assemble, mesh_seams
 from stiv.seams import Seams
 
 REPORT_FIELDS = ("frame", "status", "rounds", "distance", "blocking", "subframes", "reversible")
@@ -152,7 +152,28 @@ def _session(
     except stiv.StartIntersectsError as error:
         if intersects_only_in_render(assembly, error):
             error.add_note("only the render intersects; use --guard viewport to leave it out")
+        elif name := _opening_seam(assembly):
+            error.add_note(
+                f"{name}: a seam opens during the animation, and its faces touch here; use Merge by Distance"
+            )
         raise
+
+
+def _opening_seam(assembly: Assembly) -> str:
+    """The first object whose vertices coincide at the start but part later, if only faces there intersect; else ""."""
+    seams = [mesh_seams(mesh.local, mesh.triangles) if mesh.strands is None else None for mesh in assembly.meshes]
+    pairs = zip(assembly.meshes, seams, assembly.seams, strict=True)
+    names = [mesh.owner.name for mesh, found, kept in pairs if _joins_more(found, kept)]
+    if not names:
+        return ""
+    bodies = [assembly.surface.bodies[body] for body in assembly.surface.vertex_body[assembly.starts[:-1]]]
+    merged = assemble(assembly.meshes, [body.mobility for body in bodies], seams=seams)
+    return "" if len(stiv.find_intersections(merged.positions, merged.surface)) else names[0]
+
+
+def _joins_more(found: Seams | None, kept: Seams | None) -> bool:
+    """Do the seams of a mesh join more vertices than those that stay closed?"""
+    return found is not None and (kept is None or len(found.first) < len(kept.first))
 
 
 def _assembly(tracks: Sequence[Track], moving_sets: Sequence[MovingSet]) -> Assembly:
