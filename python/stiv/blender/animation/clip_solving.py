@@ -49,7 +49,7 @@ class ClipSolver:
     def intersections(self, surface: Floats) -> list[tuple[str, str]]:
         """Names of the objects of intersecting pairs."""
         pairs = self._static.find(surface)
-        return sorted({(a.object, b.object) for a, b in self.assembly.face_pairs(pairs)})
+        return sorted({(a.object, b.object) for a, b in self.assembly.face_pairs(pairs)[0]})
 
     def follow(
         self, start: Reached, goals: Sequence[tuple[float, Floats]], separation: float = 0.0

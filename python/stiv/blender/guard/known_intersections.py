@@ -30,7 +30,7 @@ def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tu
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
     assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs)
     pairs = find_pairs(assembly, settings.threads, 0 if settings.excluded.pairs else MOST)
-    return tuple(dict.fromkeys(without_excluded(pairs, settings.excluded)))
+    return without_excluded(pairs, settings.excluded)
 
 
 def fresh_objects(context: bpy.types.Context, settings: EditSettings, known: KnownIntersections) -> set[str]:

@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import accumulate
 
 import numpy as np
+from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices, Singles
@@ -68,11 +69,21 @@ class Assembly:
         mesh, number = self._locate(triangle, self._triangle_ends)
         return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
-    def face_pairs(self, pairs: Indices) -> list[tuple[Element, Element]]:
-        """The faces of pairs of triangles, (k, 2), of the surface or an obstacle."""
+    def face_pairs(self, pairs: Indices) -> tuple[list[tuple[Element, Element]], Indices]:
+        """The pairs of faces of pairs of triangles, (k, 2), of the surface or an obstacle.
+
+        Each pair occurs once, in the order and with the first face of its first pair of triangles. Also returns, for
+        each pair of triangles, the number of its pair of faces, (k,).
+        """
         triangles, places = np.unique(pairs, return_inverse=True)
-        faces = [self.face(triangle) for triangle in triangles.tolist()]
-        return [(faces[a], faces[b]) for a, b in places.reshape(-1, 2).tolist()]
+        faces, numbers = self._distinct_faces(triangles)
+        both = numbers[places.reshape(-1, 2)]
+        keys = both.min(axis=1) * np.int64(len(faces)) + both.max(axis=1)
+        _, firsts, inverse = np.unique(keys, return_index=True, return_inverse=True)
+        order = np.argsort(firsts)
+        rank = np.empty(len(order), np.int32)
+        rank[order] = np.arange(len(order), dtype=np.int32)
+        return [(faces[a], faces[b]) for a, b in both[firsts[order]].tolist()], rank[inverse.reshape(-1)]
 
     def loose_edge(self, edge: int) -> Element:
         """The edge of a loose edge of the surface."""
@@ -87,6 +98,21 @@ class Assembly:
             return Element(mesh.owner.name, "strand", int(mesh.strands[number]), mesh.read_from)
         first = number if seams is None else int(seams.first[number])
         return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_from, mesh.part)
+
+    def _distinct_faces(self, triangles: Indices) -> tuple[list[Element], NDArray[np.int64]]:
+        """The faces of triangles, (n,), and for each triangle the number of its face, (n,)."""
+        inside = triangles[triangles < len(self.surface.triangles)]
+        mesh = np.searchsorted(self._triangle_ends, inside, side="right")
+        keys = mesh * (np.int64(1) << 32) + self._triangle_faces[inside]
+        _, firsts, inverse = np.unique(keys, return_index=True, return_inverse=True)
+        named = [self.face(triangle) for triangle in [*inside[firsts].tolist(), *triangles[len(inside) :].tolist()]]
+        numbers = {face: number for number, face in enumerate(dict.fromkeys(named))}  # some meshes show the same faces
+        own = np.array([numbers[face] for face in named], np.int64)
+        return list(numbers), np.concatenate([own[: len(firsts)][inverse.reshape(-1)], own[len(firsts) :]])
+
+    @cached_property
+    def _triangle_faces(self) -> Indices:
+        return np.concatenate([np.empty(0, np.int32), *(each.faces for each in self.meshes)])
 
     def _element_beside(self, number: int) -> Element:
         """The element of a triangle of all obstacles."""

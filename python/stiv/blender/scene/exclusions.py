@@ -35,7 +35,8 @@ def exclude_undecided(
 
     together: names of objects, see `needs_no_decision`.
     """
-    chosen = frozenset(_key(a, b) for a, b in assembly.face_pairs(found) if needs_no_decision(a, b, together))
+    pairs, _ = assembly.face_pairs(found)
+    chosen = frozenset(_key(a, b) for a, b in pairs if needs_no_decision(a, b, together))
     return Exclusions(excluded.pairs | chosen, excluded.shapes)
 
 
@@ -47,7 +48,7 @@ def needs_no_decision(first: Element, second: Element, together: Collection[str]
 def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:
     """Pairs of different objects in pairs of triangles, (k, 2), with the number of their faces."""
     faces: dict[tuple[str, str], set[Element]] = {}
-    for elements in assembly.face_pairs(found):
+    for elements in assembly.face_pairs(found)[0]:
         first, second = sorted(each.object for each in elements)
         if first != second:
             faces.setdefault((first, second), set()).update(elements)
@@ -130,8 +131,9 @@ def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats,
     if len(excluded.pairs) == 0:
         return np.empty((0, 2), np.int32)
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
-    rows = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in assembly.face_pairs(found)]
-    chosen: Indices = found[np.array(rows, bool)]
+    pairs, numbers = assembly.face_pairs(found)
+    is_chosen = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in pairs]
+    chosen: Indices = found[np.array(is_chosen, bool)[numbers]]
     return chosen
 
 
@@ -154,7 +156,7 @@ def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threa
     """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    return all(_is_excluded(excluded, a, b) for a, b in near.assembly.face_pairs(found))
+    return all(_is_excluded(excluded, a, b) for a, b in near.assembly.face_pairs(found)[0])
 
 
 def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> set[frozenset[int]]:
@@ -168,6 +170,8 @@ def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> set[frozenset[in
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:
     """The pairs that are not excluded, and not of two objects with excluded faces."""
+    if not excluded.pairs:
+        return tuple(pairs)
     return tuple(pair for pair in pairs if not _is_excluded(excluded, pair.first, pair.second))
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from itertools import chain
 
 import numpy as np
 
@@ -24,16 +25,13 @@ def find_face_pairs(
     none = np.empty((0, 2), np.int32)
     loose = has_loose_elements(assembly.surface)
     edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads) if loose else (none, none)
-    counts = Counter(
-        [
-            *assembly.face_pairs(faces),
-            *((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
-            *((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
-        ]
-    )
-    for first, second in [pair for pair in counts if pair[0] != pair[1] and pair[::-1] in counts]:
-        if (first, second) in counts:  # pairs of two faces occur in both orders
-            counts[first, second] += counts.pop((second, first))
+    pairs, numbers = assembly.face_pairs(faces)
+    counts = Counter(dict(zip(pairs, np.bincount(numbers, minlength=len(pairs)).tolist(), strict=True)))
+    for pair in chain(
+        ((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
+        ((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
+    ):
+        counts[pair[::-1] if pair[::-1] in counts else pair] += 1
     return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
 
 

@@ -106,7 +106,7 @@ def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
         pairs = stiv.find_intersections(near.assembly.positions, near.assembly.surface, threads=threads)
         if len(pairs) == 0:
             return extended
-        intersecting = {face for pair in near.assembly.face_pairs(pairs) for face in pair}
+        intersecting = {face for pair in near.assembly.face_pairs(pairs)[0] for face in pair}
         left = [flip for each in flips if len((flip := _drop_intersecting(each, intersecting, assembly)).faces)]
         if sum(len(flip.faces) for flip in left) == sum(len(flip.faces) for flip in flips):
             return extended  # other faces intersect; the session reports them
@@ -128,7 +128,7 @@ def _bent_quads(assembly: Assembly, number: int) -> FaceTriangles | None:
     first = first[_dots(one, two) < BENT * np.sqrt(_dots(one, one) * _dots(two, two))]
     if len(first) == 0:
         return None
-    other = np.concatenate([_other_cut(mesh.triangles[row], mesh.triangles[row + 1]) for row in first])
+    other = _other_cuts(mesh.triangles[first], mesh.triangles[first + 1])
     return FaceTriangles(number, other, np.repeat(mesh.faces[first], 2))
 
 
@@ -143,12 +143,13 @@ def _dots(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.einsum("ij,ij->i", a, b))
 
 
-def _other_cut(one: Indices, two: Indices) -> Indices:
-    """The two triangles, (2, 3), of a quad split along its other diagonal."""
-    tip = next(k for k in range(3) if one[k] not in two)
-    far = next(vertex for vertex in two if vertex not in one)
-    a, b, c = np.roll(one, -tip)
-    return np.array([[a, b, far], [a, far, c]], np.int32)
+def _other_cuts(one: Indices, two: Indices) -> Indices:
+    """The triangles, (2 k, 3), of quads split along their other diagonals. one, two: their halves, (k, 3)."""
+    rows, equal = np.arange(len(one)), one[:, :, None] == two[:, None, :]
+    tip, other = equal.any(axis=2).argmin(axis=1), equal.any(axis=1).argmin(axis=1)
+    a, b, c = (one[rows, (tip + k) % 3] for k in range(3))
+    far = two[rows, other]
+    return np.stack([a, b, far, a, far, c], axis=1).reshape(-1, 3).astype(np.int32)
 
 
 def _drop_intersecting(flip: FaceTriangles, intersecting: Collection[Element], assembly: Assembly) -> FaceTriangles:
@@ -181,8 +182,12 @@ def _extend(mesh: VisibleMesh, flip: FaceTriangles) -> VisibleMesh:
 
 
 def _corners(mesh: VisibleMesh, flip: FaceTriangles) -> Iterator[Indices]:
-    for face in np.unique(flip.faces):
-        yield np.unique(mesh.triangles[mesh.faces == face])
+    rows = np.flatnonzero(np.isin(mesh.faces, flip.faces))
+    rows = rows[np.argsort(mesh.faces[rows], kind="stable")]
+    if len(rows) == 0:
+        return
+    _, firsts = np.unique(mesh.faces[rows], return_index=True)
+    yield from map(np.unique, np.split(mesh.triangles[rows], firsts[1:]))
 
 
 def is_deformable(assembly: Assembly, mesh: int) -> bool:
