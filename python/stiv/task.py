@@ -14,6 +14,9 @@ from stiv.job import WAIT, Job, JobProgress
 Result = TypeVar("Result")
 
 
+TURN = 0.05  # seconds between two turns of `Turns`
+
+
 class Left(BaseException):
     """Ends steps whose effects the caller undoes itself; they restore nothing."""
 
@@ -45,6 +48,19 @@ Steps = Generator[Call[Any] | float | None, Any, Result]
 A number is the fraction of all steps that is done. None gives a waiting caller a turn, and receives whether the work is
 cancelled.
 """
+
+
+class Turns:
+    """Gives a waiting caller a turn sometimes, in work of many short parts."""
+
+    def __init__(self) -> None:
+        self._last = time.perf_counter()
+
+    def take(self) -> Steps[None]:
+        """A step, if the last turn was more than `TURN` ago."""
+        if time.perf_counter() - self._last > TURN:
+            yield None
+            self._last = time.perf_counter()
 
 
 def run(steps: Steps[Result], **execution: Any) -> Result:

@@ -121,6 +121,15 @@ class Exclusions:
         return faces
 
     @cached_property
+    def within(self) -> Mapping[str, set[frozenset[int]]]:
+        """The excluded pairs of different faces of one object, by the name in their keys."""
+        pairs: dict[str, set[frozenset[int]]] = {}
+        for (first, i), (second, j) in self.pairs:
+            if first == second and i != j:
+                pairs.setdefault(first, set()).add(frozenset((i, j)))
+        return pairs
+
+    @cached_property
     def objects(self) -> frozenset[tuple[str, str]]:
         """Pairs of different objects with excluded faces, in ascending order."""
         return frozenset(names for names in self.faces if names[0] != names[1])

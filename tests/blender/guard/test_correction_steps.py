@@ -8,8 +8,9 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add_cube, add_grid, evaluated, snapshot
+from building import add_cube, add_grid, add_modifier, evaluated, snapshot
 
+import stiv.task
 from stiv.blender import AcceptedScene, EditSettings, Task, check_scene, guard_result, guard_result_steps, revert
 
 WALL = 3.0  # where its face is, along x
@@ -118,3 +119,45 @@ def test_a_scene_shows_the_accepted_state_while_a_correction_solves() -> None:
         if evaluated(bpy.data.objects["Grid"])[:, 0].max() < WALL:
             seen += 1
     assert seen and len(before) == 1
+
+
+def changed_users() -> AcceptedScene:
+    """A stroke on a mesh with users of different modifiers, each of which Blender evaluates on a copy."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    add_cube("Wall", (WALL + 0.5, 0, 0), 1.0, scale=(0.5, 4, 4))
+    grid = add_grid("Grid", 4)
+    for number in range(1, 5):
+        user = bpy.data.objects.new(f"Grid {number}", grid.data)
+        user.location.z, user.rotation_euler.x = 3.0 * number, 0.1 * number
+        bpy.context.collection.objects.link(user)
+        add_modifier(user, "DISPLACE", strength=0.1 * number)
+    bpy.context.view_layer.update()
+    accepted = AcceptedScene.read(bpy.context, ())
+    stroke(grid)
+    grid.data.update()
+    bpy.context.view_layer.update()
+    return accepted
+
+
+def stored() -> list[str]:
+    """Names of all that a file would store."""
+    return sorted(
+        each.name for kind in ("scenes", "objects", "meshes", "collections") for each in getattr(bpy.data, kind)
+    )
+
+
+def test_reading_many_users_takes_turns_and_leaves_nothing_behind(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stiv.task, "TURN", 0.0)
+    outcome = guard_result(bpy.context, EditSettings(), changed_users())
+    state, names = snapshot(), stored()
+    assert outcome.wrote and check_scene(bpy.context).pairs == ()
+    phases = set()
+    for turns in (1, 2, 3, 5, 8, 12):
+        task, changed = task_of(changed_users()), snapshot()
+        for _ in range(turns):
+            assert not task.advance()
+            phases.add(task.progress.phase)
+        task.abandon()
+        assert snapshot() == changed and stored() == names
+    assert "" in phases  # before the first job of the core, while it reads
+    assert finish(task_of(changed_users())) == outcome and snapshot() == state and stored() == names

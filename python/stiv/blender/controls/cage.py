@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.cage_surface import hidden_note, read_surface
+from stiv.blender.controls.cage_surface import hidden_note, read_surface_steps
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, response_weights
 from stiv.blender.controls.editable import check_data
@@ -24,6 +24,7 @@ from stiv.blender.scene.mesh_reading import read_cage, read_edges
 from stiv.blender.scene.mesh_writing import write_positions
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, run
 
 
 def make_cage_set(
@@ -37,12 +38,24 @@ def make_cage_set(
 
     Raises InputError if the mesh cannot be edited, or has modifiers that no edit can follow.
     """
+    return run(make_cage_set_steps(participant, surfaces, shown, scene, settings))
+
+
+def make_cage_set_steps(
+    participant: Participant,
+    surfaces: tuple[int, ...],
+    shown: Sequence[ShownAs],
+    scene: bpy.types.Scene,
+    settings: EditSettings,
+) -> Steps[ControlSet]:
+    """Steps of `make_cage_set`."""
     ob = participant.reference.find()
     frame, local = open_cage(ob)
     found = control_weights(ob, settings)
     max_weights = found.max_weights
     writer = cage_writer(participant.reference, ob, frame, local, settings)
-    surface = read_surface(ob, scene, writer, shown)
+    surface = yield from read_surface_steps(ob, scene, writer, shown)
+    ob = participant.reference.find()
     selected = selected_vertices(ob, participant.selected) & found.movable
     controls = transform_points(frame, local)
     whole = None if ob.mode == "EDIT" else frame

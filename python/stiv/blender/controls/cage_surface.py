@@ -26,6 +26,7 @@ from stiv.blender.scene.modifier_stack import (
     modifier_error,
     read_stack,
 )
+from stiv.task import Steps
 
 if TYPE_CHECKING:
     from stiv.blender.controls.cage import CageWriter
@@ -70,12 +71,12 @@ class HoldingWriter:
         self.writer.restore()
 
 
-def read_surface(
+def read_surface_steps(
     ob: bpy.types.Object, scene: bpy.types.Scene, writer: CageWriter, shown: Sequence[ShownAs]
-) -> CageSurface:
-    """Read how all surfaces that show a mesh follow its cage.
+) -> Steps[CageSurface]:
+    """Steps that read how all surfaces that show a mesh follow its cage.
 
-    Raises InputError for modifiers that no edit can follow.
+    Raise InputError for modifiers that no edit can follow.
     """
     users = [bpy.data.objects[each.owner] for each in shown] if len(shown) > 1 else [ob]
     users = [user if user.data == ob.data else ob for user in users]  # another mesh shows a Loop subdivision
@@ -84,7 +85,8 @@ def read_surface(
         return CageSurface(_known_surfaces(ob, scene, writer, rows))
     except UnsupportedStackError:
         showings = [ShownStack(user, each, _keys(user, writer, each)) for user, each in rows]
-        observed = ObservedStack(scene, writer.frame, transform_points(writer.frame, writer.original), showings)
+        controls = transform_points(writer.frame, writer.original)
+        observed = yield from ObservedStack.read_steps(scene, writer.frame, controls, showings)
         return CageSurface(observed.deformation, observed)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.controls.bone_set import make_bone_set
-from stiv.blender.controls.cage import make_cage_set
+from stiv.blender.controls.cage import make_cage_set_steps
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs
 from stiv.blender.controls.curve_points import make_curve_set
 from stiv.blender.controls.editable import shared_data_error
@@ -39,6 +39,7 @@ from stiv.blender.scene.evaluations import VIEWPORT, is_active
 from stiv.blender.scene.modifier_stack import UnsupportedStackError, modifier_error
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, Turns, run
 
 
 def make_control_sets(
@@ -49,6 +50,18 @@ def make_control_sets(
     kind: str,
 ) -> tuple[list[ControlSet], list[RigidGroup]]:
     """Make all control sets and rigid groups. Raises InputError for what cannot be moved, with nothing changed."""
+    return run(make_control_sets_steps(context, participants, meshes, settings, kind))
+
+
+def make_control_sets_steps(
+    context: bpy.types.Context,
+    participants: Sequence[Participant],
+    meshes: Sequence[VisibleMesh],
+    settings: EditSettings,
+    kind: str,
+) -> Steps[tuple[list[ControlSet], list[RigidGroup]]]:
+    """Steps of `make_control_sets`."""
+    turns = Turns()
     if any(each.role == "bones" for each in participants):
         rigs = [each for each in participants if each.role == "bones"]
         clothes = [each for each in participants if each.role != "bones"]
@@ -72,11 +85,11 @@ def make_control_sets(
     groups, passengers = attach_passengers(groups, {mesh.owner.name for mesh in meshes})
     control_sets = [_rigid(group, meshes, settings, kind) for group in groups]
     for participant in participants:
+        yield from turns.take()
         if participant.role == "cage":
             surfaces = _shown_as(participant.reference.name, meshes, settings)
-            control_sets.append(
-                make_cage_set(participant, surfaces, _read_in(surfaces, meshes), context.scene, settings)
-            )
+            shown = _read_in(surfaces, meshes)
+            control_sets.append((yield from make_cage_set_steps(participant, surfaces, shown, context.scene, settings)))
         elif participant.role == "curve":
             surfaces = _shown_as(participant.reference.name, meshes, settings)
             evaluations = [meshes[index].read_from for index in surfaces]

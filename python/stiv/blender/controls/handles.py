@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import cage_writer, open_cage, selected_vertices
-from stiv.blender.controls.cage_surface import hidden_note, read_surface
+from stiv.blender.controls.cage_surface import hidden_note, read_surface_steps
 from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs, Writer
 from stiv.blender.controls.control_weights import axes_of_weights, control_weights, pinned_directions, response_weights
 from stiv.blender.controls.joined_seams import SeamWriter, copy_to_seams, join_notes, join_rows, seam_message
@@ -24,6 +24,7 @@ from stiv.blender.scene.mesh_reading import read_triangles
 from stiv.blender.scene.vertex_groups import group_weights
 from stiv.blender.settings import EditSettings, Handles
 from stiv.seams import Seams
+from stiv.task import run
 
 
 def make_handle_sets(
@@ -55,7 +56,7 @@ def make_handle_sets(
     mesh = make(rest, join_rows(triangles, control_seams), found.vertices, fixed=found.fixed, pull=pull)
     cage = stiv.stored_mesh(mesh, frame)
     writer = cage_writer(participant.reference, ob, frame, local, settings)
-    surface = read_surface(ob, scene, writer, shown_as)
+    surface = run(read_surface_steps(ob, scene, writer, shown_as))
     shown = cage if control_seams is None else copy_to_seams(cage, control_seams)
     whole = surface.of_vertices(shown)
     limited = surface.limited(writer)

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.controls.held_vertices import find_held_vertices
+from stiv.blender.controls.held_vertices import HeldVertices, find_held_vertices
 from stiv.blender.controls.stack_block import BlockSettings, StackBlock
 from stiv.blender.controls.stack_refusals import check_projections
 from stiv.blender.controls.subdivision import (
@@ -22,6 +22,7 @@ from stiv.blender.controls.subdivision import (
 )
 from stiv.blender.scene.arrays import Floats, Indices, to_local
 from stiv.blender.scene.stack_twin import kept_twins
+from stiv.task import Steps, Turns
 
 
 @dataclass(frozen=True)
@@ -46,25 +47,35 @@ class ObservedStack:
         deformation: infeasible where the topology differs from that at the start.
     """
 
-    def __init__(self, scene: bpy.types.Scene, frame: Floats, controls: Floats, shown: Sequence[ShownStack]) -> None:
-        """Read the stacks of a mesh with a frame, (4, 4). Raises InputError if they cannot be followed."""
+    def __init__(self, frame: Floats, controls: Floats, held: HeldVertices, parts: _Parts) -> None:
+        """Take the parts that `read_steps` has read. Only inside `kept_twins`."""
+        self._frame, self._start, self._held = frame, controls, held
+        self._cages, self._blocks = parts.cages, parts.blocks
+        self._observed = stiv.observed(self._blocks.evaluate, self._blocks.jacobian())
+        self._ends = self._find_ends(parts.places, parts.settings)
+        self.deformation = self.deformation_of(None)
+
+    @classmethod
+    def read_steps(
+        cls, scene: bpy.types.Scene, frame: Floats, controls: Floats, shown: Sequence[ShownStack]
+    ) -> Steps[ObservedStack]:
+        """Steps that read the stacks of a mesh with a frame, (4, 4). Raise InputError if they cannot be followed."""
         for each in shown:
             check_projections(each.ob, each.evaluation)
-        self._frame, self._start = frame, controls
-        self._held = find_held_vertices([each.ob for each in shown], to_local(frame, controls))
+        held = find_held_vertices([each.ob for each in shown], to_local(frame, controls))
         with kept_twins():
             settings = [BlockSettings.read(each.ob, scene, each.evaluation) for each in shown]
             keys = [(each.shown_by, id(showing.cage)) for each, showing in zip(settings, shown, strict=True)]
             order = list(dict.fromkeys(keys))
             firsts = [keys.index(key) for key in order]
-            self._cages = [shown[first].cage for first in firsts]
-            self._blocks = _Blocks([
-                StackBlock(settings[first], frame, controls if cage is None else cage.surface(controls), self._held)
-                for first, cage in zip(firsts, self._cages, strict=True)
-            ])  # fmt: skip
-            self._observed = stiv.observed(self._blocks.evaluate, self._blocks.jacobian())
-            self._ends = self._find_ends([order.index(key) for key in keys], settings)
-        self.deformation = self.deformation_of(None)
+            cages = [shown[first].cage for first in firsts]
+            blocks, turns = [], Turns()
+            for first, cage in zip(firsts, cages, strict=True):
+                start = controls if cage is None else cage.surface(controls)
+                blocks.append(StackBlock(settings[first], frame, start, held))
+                yield from turns.take()
+            parts = _Parts(cages, _Blocks(blocks), [order.index(key) for key in keys], settings)
+            return cls(frame, controls, held, parts)
 
     def hold(self, controls: Floats) -> Floats:
         """World positions, (m, 3), with vertices where Mirror and Weld modifiers need them."""
@@ -113,6 +124,23 @@ class ObservedStack:
             weights = identity_weights(block.count) if subdivision is None else block.end_weights(subdivision)
             rows.append(moved_columns(weights, sum(counts[:place]), sum(counts)))
         return stiv.linear(stack_weights(rows))
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """What is read for an `ObservedStack`.
+
+    Attributes:
+        cages: of the distinct blocks, as in `ShownStack`.
+        blocks: the distinct ones.
+        places: the number of its block for each surface.
+        settings: of each surface.
+    """
+
+    cages: Sequence[stiv.Deformation | None]
+    blocks: _Blocks
+    places: Sequence[int]
+    settings: Sequence[BlockSettings]
 
 
 @dataclass

@@ -23,7 +23,7 @@ from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.increments import Path, StillIncrements, split_motion
 from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
-from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot
+from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot_steps
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.standstill import contact_text, lock_text
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
@@ -76,7 +76,7 @@ class BlenderEdit:
 
     @classmethod
     def begin_steps(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> Steps[BlenderEdit]:
-        """Steps of `begin`; the first reads the scene."""
+        """Steps of `begin`; the first ones read the scene."""
         check_kind(kind)
         participants = find_participants(context, settings)
         obstacles = find_obstacles(context, {each.reference.name for each in participants}, settings)
@@ -112,7 +112,7 @@ class BlenderEdit:
     ) -> Steps[BlenderEdit]:
         """Steps of `begin_with`."""
         with kept_twins():
-            edit = cls(take_snapshot(context, settings, kind, participants, adapt, obstacles))
+            edit = cls((yield from take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)))
             yield from edit._solver.start()
         return edit
 

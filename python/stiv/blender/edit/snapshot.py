@@ -8,7 +8,7 @@ from functools import cached_property
 import bpy
 
 from stiv import InputError
-from stiv.blender.controls.control_reading import make_control_sets
+from stiv.blender.controls.control_reading import make_control_sets_steps
 from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
@@ -24,6 +24,7 @@ from stiv.blender.scene.guarded_evaluations import Guard, read_guarded_scene
 from stiv.blender.scene.static_reading import read_static_meshes
 from stiv.blender.scene.strand_reading import surface_of
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, Turns
 
 
 @dataclass(frozen=True)
@@ -57,28 +58,31 @@ class EditSnapshot:
         return digest(*(each.controls for each in self.control_sets), points, *self.placements).hex()
 
 
-def take_snapshot(
+def take_snapshot_steps(
     context: bpy.types.Context,
     settings: EditSettings,
     kind: str,
     participants: Sequence[Participant],
     adapt: Callable[[ControlSet], ControlSet],
     obstacles: Collection[str],
-) -> EditSnapshot:
-    """Read the scene for an edit of this kind; changes nothing. Raises InputError.
+) -> Steps[EditSnapshot]:
+    """Steps that read the scene for an edit of this kind, and change nothing. Raise InputError.
 
     adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface.
     """
     if settings.guard == "auto" and any(_is_animated(context, each) for each in participants):
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
+    turns = Turns()
     scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
-    found, groups = make_control_sets(context, participants, solid, settings, kind)
+    yield from turns.take()
+    found, groups = yield from make_control_sets_steps(context, participants, solid, settings, kind)
     control_sets = tuple(adapt(mirror_controls(each, solid)) for each in found)
     divided = next((each.posed.meshes for each in control_sets if each.posed is not None), solid)
     if not any(each.rule.moves for each in control_sets):
         raise _nothing_moves(participants, solid)
+    yield from turns.take()
     moving = {each.reference.name for each in participants}.union(
         *(group.members for group in groups),
         (divided[index].owner.name for control_set in control_sets for index in control_set.surfaces),

@@ -25,7 +25,7 @@ from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
 from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
-from stiv.task import Call, Steps, run
+from stiv.task import Call, Steps, Turns, run
 
 LAST_DRAG_TIME = 0.5  # seconds in which the last drag is solved again after the deadline
 CALLS = 4  # of a session between two Jacobians of observed stacks
@@ -57,7 +57,9 @@ class EditSolver:
     def start(self) -> Steps[None]:
         """Steps that open the session, if collisions are on. Raise InputError, StartIntersectsError."""
         if self._settings.interference:
+            turns = Turns()
             self._at_start = guard_bent_quads(self.assembly, self._settings.threads)
+            yield from turns.take()
             yield from self._open_session(self._at_start, self.trail.written)
 
     @property

@@ -26,7 +26,12 @@ from stiv.blender.guard.entering import (
     place_part_freely,
     touches_others,
 )
-from stiv.blender.guard.known_intersections import find_intersections, fresh_objects, object_pair
+from stiv.blender.guard.known_intersections import (
+    find_intersections,
+    find_intersections_steps,
+    fresh_objects,
+    object_pair,
+)
 from stiv.blender.guard.new_parts import find_new_part, joins_others
 from stiv.blender.guard.pose_correction import correct_poses_steps
 from stiv.blender.guard.scene_state import SceneState, read_object, read_state, revert
@@ -115,7 +120,7 @@ def _guard(
     result = GuardedResult(reason=changes.unsupported)
     start = accepted.state
     if changes.unsupported:
-        result.pairs = find_intersections(context, settings)
+        result.pairs = yield from find_intersections_steps(context, settings)
         yield None
         yield from _guard_new_geometry(context, settings, accepted, changes, result, end)
         start = _start_of(changes, accepted.state, read_state(context))
@@ -129,7 +134,7 @@ def _guard(
     followed = changes.changes or changes.posed
     if not tested and (not followed or result.reason or result.deformers or accepted.known.pairs):
         yield None
-        result.pairs = find_intersections(context, settings)
+        result.pairs = yield from find_intersections_steps(context, settings)
     return result
 
 

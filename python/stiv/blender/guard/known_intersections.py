@@ -15,6 +15,7 @@ from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import find_pairs, tested_names
+from stiv.task import Steps, Turns, run
 
 MOST = 1000  # pairs of triangles; a copy of a large mesh in the place of its original has millions
 
@@ -27,8 +28,16 @@ def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tu
 
     Raises InputError.
     """
+    return run(find_intersections_steps(context, settings))
+
+
+def find_intersections_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[tuple[FacePair, ...]]:
+    """Steps of `find_intersections`."""
+    turns = Turns()
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
+    yield from turns.take()
     assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs)
+    yield from turns.take()
     pairs = find_pairs(assembly, settings.threads, 0 if settings.excluded.pairs else MOST)
     return without_excluded(pairs, settings.excluded)
 

@@ -162,10 +162,7 @@ def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threa
 def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> set[frozenset[int]]:
     """Pairs of faces of one mesh, or part of one, that are excluded."""
     side = Element(mesh.owner.name, "face", 0, mesh.read_from, mesh.part)
-    name = _name(side.side, mesh.read_from)
-    if (side.side, side.side) not in excluded.faces:
-        return set()
-    return {frozenset((i, j)) for (a, i), (b, j) in excluded.pairs if a == b == name and i != j}
+    return excluded.within.get(_name(side.side, mesh.read_from), set())
 
 
 def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:
