@@ -9,11 +9,21 @@ import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, evaluated, mesh, turn
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, mesh, select, turn
+from torn_sheets import CROSSING, PARTING, add_key, cutting_faces, named, torn_sheet
 
 import stiv
 from blend_fixtures.characters import make_character, select_bones
-from stiv.blender import BlenderEdit, EditSettings, Motion, check_scene, morph
+from stiv.blender import (
+    AcceptedScene,
+    BlenderEdit,
+    EditSettings,
+    Motion,
+    check_scene,
+    find_intersections,
+    guard_result,
+    morph,
+)
 from stiv.blender.controls.closed_seams import MergedRows
 from stiv.seams import Seams
 
@@ -166,3 +176,82 @@ def test_an_evaluation_in_which_a_seam_has_opened_is_refused() -> None:
     assert np.array_equal(vertices.merged(2 * points), 2 * points[[0, 1, 4]])
     points[3, 1] += 1e-3
     assert vertices.merged(points) is None
+
+
+OPENS_AT = 0.8  # radians that the bone has turned
+
+
+def sheet_that_opens(moved: dict[int, Any]) -> tuple[Any, Any]:
+    """A sheet with a seam that a driver opens late, when its bone has turned far: the sheet and the bone."""
+    sheet = torn_sheet()
+    key = add_key(sheet, "Open", moved)
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(rig)
+    select(rig)
+    edit_mode(rig)
+    made = rig.data.edit_bones.new("Bone")
+    made.head, made.tail = (0, 0, 0), (0, 1, 0)
+    bpy.ops.object.mode_set(mode="POSE")
+    sheet.vertex_groups.new(name="Bone").add(list(range(8)), 1.0, "REPLACE")
+    add_modifier(sheet, "ARMATURE", object=rig)
+    driver = key.driver_add("value").driver
+    variable = driver.variables.new()
+    variable.name, variable.type = "turn", "TRANSFORMS"
+    target = variable.targets[0]
+    target.id, target.bone_target, target.transform_type, target.transform_space = rig, "Bone", "ROT_X", "LOCAL_SPACE"
+    driver.expression = f"min(max(0, 5 * (turn - {OPENS_AT})), 1)"
+    bone = rig.pose.bones["Bone"]
+    bone.rotation_mode = "XYZ"
+    select_bones(rig, "Bone")
+    bpy.context.view_layer.update()
+    return sheet, bone
+
+
+def apply_turn(edit: BlenderEdit, angle: float) -> stiv.EditResult:
+    return edit.apply(Motion(turn(angle, "X", (0, 0, 0)), np.zeros(3)))
+
+
+def drag_turn(edit: BlenderEdit, angle: float) -> stiv.EditResult:
+    """As with the mouse: in calls within a time budget, repeated at the goal."""
+    for goal in (*np.linspace(0.1, angle, 12), *[angle] * 20):
+        result = edit.drag(Motion(turn(goal, "X", (0, 0, 0)), np.zeros(3)), time_budget=0.2)
+    return result
+
+
+@pytest.mark.parametrize("move", [apply_turn, drag_turn])
+def test_a_pose_goes_on_where_a_seam_opens_late(move: Any) -> None:
+    """Its faces are then apart, as those of seams that open at once; Esc restores the start."""
+    for moved, count in ((PARTING, 0), (CROSSING, 2)):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        sheet, bone = sheet_that_opens(moved)
+        start = evaluated(sheet)
+        edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
+        assert len(edit.surface) == 6 and not edit.keeps_intersections
+        assert move(edit, 1.2).status in ("reached", "unchanged") and edit.write().passed
+        assert bone.rotation_euler.x == pytest.approx(1.2, abs=1e-4)
+        assert len(edit.surface) == 8 and widest_gap(sheet, start) > 0.1
+        assert cutting_faces(sheet) == count
+        assert [named(note) for note in edit.untested_notes] == ([count] if count else [])
+        edit.restore()
+        bpy.context.view_layer.update()
+        assert bone.rotation_euler.x == 0 and np.array_equal(evaluated(sheet), start)
+
+
+def test_an_edit_that_goes_on_with_an_open_seam_still_stops_at_obstacles() -> None:
+    _, bone = sheet_that_opens(PARTING)
+    add_cube("Box", (0, 0.2, 1.1), 0.2)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
+    assert apply_turn(edit, 1.5).status in ("blocked", "corrected") and edit.write().passed
+    assert OPENS_AT + 0.2 < bone.rotation_euler.x < 1.2  # where the edge of the sheet meets the box
+    assert not [each for each in check_scene(bpy.context).pairs if "Box" in (each.first.object, each.second.object)]
+
+
+def test_the_guard_goes_on_where_a_seam_opens_late() -> None:
+    settings = EditSettings(separation=0.001)
+    sheet, bone = sheet_that_opens(CROSSING)
+    accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, settings))
+    bone.rotation_euler.x = 1.2
+    bpy.context.view_layer.update()
+    outcome = guard_result(bpy.context, settings, accepted)
+    assert not outcome.cut and bone.rotation_euler.x == pytest.approx(1.2, abs=1e-4)
+    assert [named(note) for note in outcome.notes] == [cutting_faces(sheet)] == [2]

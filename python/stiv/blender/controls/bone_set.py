@@ -81,7 +81,8 @@ def make_bone_set(
     followers = find_followers(context.scene, {rig.name for rig in rigs})
     if not any(mesh.owner.name in followers for mesh in meshes):
         raise InputError(f"{rigs[0].name}: it deforms no visible mesh; parent one to it")
-    posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region, garments)
+    torn = participants[0].torn
+    posed = PosedSurface(bones, frozenset(followers), meshes, responses, settings.joint_region, garments, torn)
     scalars = BoneScalars(tuple(bones))
     weights = scalars.of(responses)
     names, start, writer = tuple(rig.name for rig in rigs), as_controls(posed.start), BoneWriter(scalars, MOVED[kind])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data of an edit: its participants, and their controls with deformation, goal and writer."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol
 
 from numpy.typing import NDArray
@@ -24,13 +24,14 @@ class Participant:
     """An object with controls; the goal moves it if it is `selected`.
 
     Its role is "cage", "soft", "lattice", "curve", "bones" or "rigid". `bones` are those of a rig that the goal moves;
-    none for the selected ones.
+    none for the selected ones. `torn` are surfaces, (n, 3), of poses in which seams are open (`PosedSurface.opened`).
     """
 
     reference: ObjectReference
     role: str
     selected: bool
     bones: "tuple[BoneChannels, ...]" = ()
+    torn: tuple[Floats, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)

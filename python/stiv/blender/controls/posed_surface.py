@@ -38,6 +38,8 @@ class PosedSurface:
         meshes: all meshes of the scene; those that the bones bend are divided at joints.
         surfaces: indices of those that the bones move.
         seams: for each of them, the vertices that stay together.
+        opened: world positions of all vertices, (n, 3), at the pose nearest to the start in which one of these seams
+            opened; None if none has.
         untested: pairs of parts that are not tested against each other, with the name of the object.
         note: on the faces at joints; "" without any.
     """
@@ -50,10 +52,12 @@ class PosedSurface:
         weights: Sequence[Floats],
         joint_region: float,
         garments: Sequence[Garment] = (),
+        torn: Sequence[Floats] = (),
     ) -> None:
         """followers: names of all objects that move with the rigs. weights: of the channels of each bone, (10,).
 
         joint_region: as in EditSettings. garments: yield; their controls follow the scalars in the deformation.
+        torn: surfaces in which seams are open: `opened` of earlier ones.
         """
         scalars = BoneScalars(tuple(bones))
         followers = followers.union(*({meshes[k].owner.name for k in each.controls.surfaces} for each in garments))
@@ -62,7 +66,7 @@ class PosedSurface:
         with kept_twins():
             self._poses = _Poses(scalars, followers, moved, scalars.of(weights) > 0, _wear(garments, meshes, moved))
             jacobian, skins = self._poses.jacobian(), self._poses.weights()
-            closed = self._poses.closed_seams(moved, jacobian, [values for _, values in skins])
+            closed = self._poses.closed_seams(moved, jacobian, [values for _, values in skins], torn)
             regions = divide_all(moved, skins, self._poses.joints(), jacobian, joint_region, closed)
         waiting = iter(regions)
         divided = [next(waiting).parts if mesh.owner.name in followers else (mesh,) for mesh in meshes]
@@ -76,19 +80,18 @@ class PosedSurface:
         self.note = joint_note(moved, regions)
         poses, places = self._poses, _places_of(moved, [self.meshes[k] for k in self.surfaces])
         vertices = MergedRows.of(places, self.seams, np.concatenate([mesh.world() for mesh in moved]))
-        rows = self._rows = vertices.rows
+        rows, merger = vertices.rows, _Merger(vertices, self.start)
+        self._rows, self._merger = rows, merger
         lower, upper = (scalars.of(each) for each in ([b.lower for b in bones], [b.upper for b in bones]))
 
         def evaluate(values: Floats) -> Floats | None:
-            found = poses.evaluate(values)
-            return None if found is None else vertices.merged(found)
+            return merger.merged(values, poses.evaluate(values))
 
         def evaluate_dressed(controls: Floats) -> Floats | None:
             values = controls[: len(lower), 0]
             if (values < lower).any() or (values > upper).any():
                 return None
-            found = poses.evaluate(values, controls[len(lower) :])
-            return None if found is None else vertices.merged(found)
+            return merger.merged(values, poses.evaluate(values, controls[len(lower) :]))
 
         self.deformation: stiv.ScalarDeformation | stiv.ObservedDeformation
         if garments:
@@ -98,6 +101,11 @@ class PosedSurface:
             longest = scalars.of([each.longest_steps for each in bones])
             self.deformation = stiv.scalars(evaluate, jacobian[rows], lower=lower, upper=upper, longest_step=longest)
 
+    @property
+    def opened(self) -> Floats | None:
+        """See the attributes."""
+        return self._merger.opened
+
     def renew_jacobian(self) -> None:
         """Measure the Jacobian at the last evaluation."""
         with kept_twins():
@@ -106,6 +114,23 @@ class PosedSurface:
                 self.deformation.set_jacobian(jacobian[self._rows])
             else:
                 self.deformation.set_jacobian(self._poses.blocks(jacobian, self._rows))
+
+
+class _Merger:
+    """Merges seams, and stores the pose nearest to the start in which one opened. The core holds it, as `_Poses`."""
+
+    def __init__(self, vertices: MergedRows, start: Floats) -> None:
+        self._vertices, self._start = vertices, start
+        self._distance = np.inf
+        self.opened: Floats | None = None
+
+    def merged(self, values: Floats, positions: Floats | None) -> Floats | None:
+        """Positions of the vertices that remain, (k, 3), at scalars, (s,); None if a seam has opened."""
+        points = None if positions is None else self._vertices.merged(positions)
+        distance = float(np.linalg.norm(values - self._start))
+        if positions is not None and points is None and distance < self._distance:
+            self._distance, self.opened = distance, positions
+        return points
 
 
 @dataclass(frozen=True)
@@ -228,16 +253,16 @@ class _Poses:
         return result
 
     def closed_seams(
-        self, meshes: Sequence[VisibleMesh], jacobian: Floats, weights: Sequence[Floats]
+        self, meshes: Sequence[VisibleMesh], jacobian: Floats, weights: Sequence[Floats], torn: Sequence[Floats] = ()
     ) -> list[Seams | None]:
         """The seams of each mesh that stay closed: in the steps of the Jacobian, (n, 3, k), and in two other poses.
 
-        weights: of bones at the vertices of each mesh, (n, g).
+        weights: of bones at the vertices of each mesh, (n, g). torn: further surfaces, (n, 3).
         """
         seams = [mesh_seams(mesh.local, mesh.triangles) for mesh in meshes]
         if all(each is None for each in seams):
             return seams
-        states, ends = [jacobian * self._steps, *self._far_states()], np.cumsum(self._counts)[:-1]
+        states, ends = [jacobian * self._steps, *self._far_states(), *torn], np.cumsum(self._counts)[:-1]
         own = zip(*(np.split(each, ends) for each in states), strict=True)
         return [limit_to_closed(*each) for each in zip(seams, meshes, own, weights, strict=True)]
 

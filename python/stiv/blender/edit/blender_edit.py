@@ -21,7 +21,13 @@ from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.increments import Path, StillIncrements, split_motion
-from stiv.blender.edit.results import intersecting_objects, merge_results, round_to_storage, unguarded_result
+from stiv.blender.edit.results import (
+    intersecting_objects,
+    is_cut_by_topology,
+    merge_results,
+    round_to_storage,
+    unguarded_result,
+)
 from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot_steps
 from stiv.blender.edit.solver import EditSolver
@@ -38,6 +44,8 @@ from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
+MOST_TORN = 4  # poses in which seams open, after each of which an edit begins again
+
 
 class BlenderEdit:
     """An edit from the snapshot of the scene to the last state written. It holds no references to Blender's data
@@ -51,7 +59,8 @@ class BlenderEdit:
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
-    def __init__(self, snapshot: EditSnapshot) -> None:
+    def __init__(self, snapshot: EditSnapshot, read: Callable[[Sequence[Floats]], Steps[EditSnapshot]]) -> None:
+        """read: steps that read the snapshot again, with more seams apart, see `Participant.torn`."""
         settings = snapshot.settings
         self.dropped_exclusions, self._snapshot = snapshot.dropped_exclusions, snapshot
         self.guard, self.carried = snapshot.guard, snapshot.carried
@@ -61,6 +70,8 @@ class BlenderEdit:
         self._goal = self._start
         self._motion: Motion | None = None
         self._taken: TakenState | None = None
+        self._read = read
+        self._torn: tuple[Floats, ...] = ()
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
         self._solver = EditSolver(snapshot.assembly, self._made, self._start, settings)
@@ -111,8 +122,14 @@ class BlenderEdit:
         obstacles: Collection[str] = (),
     ) -> Steps[BlenderEdit]:
         """Steps of `begin_with`."""
+
+        def read(torn: Sequence[Floats]) -> Steps[EditSnapshot]:
+            chosen = [replace(each, torn=tuple(torn)) if each.role == "bones" else each for each in participants]
+            return take_snapshot_steps(bpy.context, settings, kind, chosen, adapt, obstacles)
+
         with kept_twins():
-            edit = cls((yield from take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)))
+            first = take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)
+            edit = cls((yield from first), read)
             yield from edit._solver.start()
         return edit
 
@@ -351,7 +368,10 @@ class BlenderEdit:
             self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
         with kept_twins():
-            return (yield from self._solver.solve(self._goal, time_budget=time_budget, hand_over=hand_over))
+            result = yield from self._solver.solve(self._goal, time_budget=time_budget, hand_over=hand_over)
+            if not (yield from self._reopen(result)):
+                return result
+        return (yield from self.drag_steps(motion, time_budget, hand_over))
 
     def drag_to(self, goal: Floats, **execution: Any) -> stiv.EditResult:
         """Solve for a goal of all controls, (m, 3)."""
@@ -361,7 +381,28 @@ class BlenderEdit:
         """Steps of `drag_to`; `time_budget` is that of stiv.EditSession.drag."""
         self._goal = goal
         with kept_twins():
-            return (yield from self._solver.solve(goal, time_budget=time_budget))
+            result = yield from self._solver.solve(goal, time_budget=time_budget)
+            if not (yield from self._reopen(result)):
+                return result
+        return (yield from self.drag_to_steps(goal, time_budget))
+
+    def _reopen(self, result: stiv.EditResult) -> Steps[bool]:
+        """Steps that begin again from the start, with seams apart that opened and thereby stopped the edit.
+
+        They return whether they did.
+        """
+        posed = [each.posed for each in self.control_sets if each.posed is not None]
+        opened = [each.opened for each in posed if each.opened is not None]
+        if not opened or not is_cut_by_topology(result) or len(self._torn) >= MOST_TORN:
+            return False
+        goal, motion, torn = self._goal, self._motion, (*self._torn, *opened)
+        restore_controls(self.control_sets)
+        edit = BlenderEdit((yield from self._read(torn)), self._read)
+        yield from edit._solver.start()
+        vars(self).pop("_writer", None)
+        vars(self).update(vars(edit))
+        self._goal, self._motion, self._torn = goal, motion, torn
+        return True
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
