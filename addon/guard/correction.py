@@ -10,7 +10,7 @@ import bpy
 
 from .. import stiv_blender
 from ..modal.header_texts import naming
-from ..operators.reports import message_text
+from ..operators.reports import message_text, topology_text
 from ..scene.edit_settings import edit_settings
 from ..translations import translate
 
@@ -82,7 +82,7 @@ def _text(guarded: stiv_blender.GuardedResult) -> str:
     elif guarded.corrected:
         texts.append(_naming(translate("corrected {}"), guarded.corrected))
     if guarded.cut:
-        texts.append(translate("blocked: the topology changes here"))
+        texts.append(topology_text(guarded.cut))
     if guarded.stopped:
         texts.append(translate("stopped after {} seconds, short of the goal").format(f"{TIME_LIMIT:g}"))
     if guarded.placed:

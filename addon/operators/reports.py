@@ -12,7 +12,7 @@ import bpy
 from .. import stiv_blender
 from ..intersection_texts import LENGTH, as_message, as_messages, brief, short_name
 from ..modal.drag_loop import DragEnded, restore_after_error
-from ..modal.header_texts import result_text
+from ..modal.header_texts import naming, result_text
 from ..translations import errors, translate, translate_error
 from ..units import length_text
 
@@ -27,8 +27,8 @@ def say(operator: bpy.types.Operator, kind: str, text: str) -> None:
 
 def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None = None) -> str:
     """The status of a result, with the names of blocking objects, or why none is named. edit: of the result."""
-    if stiv_blender.is_cut_by_topology(result):
-        return translate("blocked: the topology changes here")
+    if edit is not None and stiv_blender.is_cut_by_topology(result):
+        return topology_text(sorted(edit.moving))
     if result.status == "blocked" and edit is not None and edit.keeps_intersections:
         if not result.blocking:
             return translate("blocked: intersecting surfaces may only part; see Let These Pass")
@@ -36,6 +36,12 @@ def outcome_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit | None
             text = translate("blocked by {}, which cuts itself; see Let These Pass")
             return stiv_blender.fit_message(text, result.blocking[0])
     return result_text(result.status, tuple(result.blocking), translate, stiv_blender.fit_message)
+
+
+def topology_text(names: Sequence[str]) -> str:
+    """The message on objects whose topology would change further along."""
+    text = translate("blocked: the topology of {} changes here; apply its modifiers")
+    return naming(text, translate, stiv_blender.fit_message, names[:1])
 
 
 def end_text(result: stiv_blender.EditResult, edit: stiv_blender.Edit) -> str:

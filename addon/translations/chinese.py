@@ -450,7 +450,7 @@ MESSAGES = {
     "blocked by {}": "被 {} 阻挡",
     "blocked by {}, which cuts itself; see Let These Pass": "被自身相交的 {} 阻挡；参见“允许这些穿过”",
     "blocked: intersecting surfaces may only part; see Let These Pass": "被阻挡：相交的表面只能分开；参见“允许这些穿过”",
-    "blocked: the topology changes here": "被阻挡：此处的拓扑会改变",
+    "blocked: the topology of {} changes here; apply its modifiers": "被阻挡：{} 的拓扑会在此处改变；请应用其修改器",
     "cancelled": "已取消",
     "cancelled, nothing changed": "已取消，没有改动",
     "clear": "无相交",

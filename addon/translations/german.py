@@ -450,7 +450,7 @@ MESSAGES = {
     "blocked by {}": "blockiert von {}",
     "blocked by {}, which cuts itself; see Let These Pass": "blockiert von {}, das sich selbst schneidet; siehe „Diese durchlassen“",
     "blocked: intersecting surfaces may only part; see Let These Pass": "blockiert: was sich schneidet, darf sich nur trennen; siehe „Diese durchlassen“",
-    "blocked: the topology changes here": "blockiert: hier ändert sich die Topologie",
+    "blocked: the topology of {} changes here; apply its modifiers": "blockiert: hier ändert sich die Topologie von {}; seine Modifikatoren anwenden",
     "cancelled": "abgebrochen",
     "cancelled, nothing changed": "abgebrochen, nichts ist verändert",
     "clear": "frei",

@@ -450,7 +450,7 @@ MESSAGES = {
     "blocked by {}": "{} に阻まれています",
     "blocked by {}, which cuts itself; see Let These Pass": "自己交差している {} に阻まれています（「通過を許可」を参照）",
     "blocked: intersecting surfaces may only part; see Let These Pass": "阻まれています: 交差している面は離れることしかできません（「通過を許可」を参照）",
-    "blocked: the topology changes here": "阻まれています: ここでトポロジーが変わります",
+    "blocked: the topology of {} changes here; apply its modifiers": "阻まれています: ここで {} のトポロジーが変わります。モディファイアーを適用してください",
     "cancelled": "キャンセルしました",
     "cancelled, nothing changed": "キャンセルしました。何も変わっていません",
     "clear": "干渉なし",

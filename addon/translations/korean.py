@@ -450,7 +450,7 @@ MESSAGES = {
     "blocked by {}": "{}에 막힘",
     "blocked by {}, which cuts itself; see Let These Pass": "자체 교차하는 {}에 막힘 (이들을 통과 허용 참조)",
     "blocked: intersecting surfaces may only part; see Let These Pass": "막힘: 교차하는 표면은 떨어지기만 할 수 있습니다 (이들을 통과 허용 참조)",
-    "blocked: the topology changes here": "막힘: 여기서 토폴로지가 바뀝니다",
+    "blocked: the topology of {} changes here; apply its modifiers": "막힘: 여기서 {}의 토폴로지가 바뀝니다. 해당 모디파이어를 적용하세요",
     "cancelled": "취소됨",
     "cancelled, nothing changed": "취소됨, 변경 없음",
     "clear": "교차 없음",

@@ -20,7 +20,7 @@ from stiv_addon.guard import correction  # noqa: E402
 from stiv_addon.operators import reports  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
-SAID = "blocked: the topology changes here"
+SAID = "blocked: the topology of Piece changes here; apply its modifiers"
 
 
 @pytest.fixture(params=["OBJECT", "EDIT"])

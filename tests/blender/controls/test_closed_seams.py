@@ -219,7 +219,7 @@ def drag_turn(edit: BlenderEdit, angle: float) -> stiv.EditResult:
 
 
 @pytest.mark.parametrize("move", [apply_turn, drag_turn])
-def test_a_pose_goes_on_where_a_seam_opens_late(move: Any) -> None:
+def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
     """Its faces are then apart, as those of seams that open at once; Esc restores the start."""
     for moved, count in ((PARTING, 0), (CROSSING, 2)):
         bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -237,7 +237,7 @@ def test_a_pose_goes_on_where_a_seam_opens_late(move: Any) -> None:
         assert bone.rotation_euler.x == 0 and np.array_equal(evaluated(sheet), start)
 
 
-def test_an_edit_that_goes_on_with_an_open_seam_still_stops_at_obstacles() -> None:
+def test_an_edit_that_continues_with_an_open_seam_still_stops_at_obstacles() -> None:
     _, bone = sheet_that_opens(PARTING)
     add_cube("Box", (0, 0.2, 1.1), 0.2)
     edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
@@ -246,7 +246,7 @@ def test_an_edit_that_goes_on_with_an_open_seam_still_stops_at_obstacles() -> No
     assert not [each for each in check_scene(bpy.context).pairs if "Box" in (each.first.object, each.second.object)]
 
 
-def test_the_guard_goes_on_where_a_seam_opens_late() -> None:
+def test_the_guard_continues_where_a_seam_opens_late() -> None:
     settings = EditSettings(separation=0.001)
     sheet, bone = sheet_that_opens(CROSSING)
     accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, settings))

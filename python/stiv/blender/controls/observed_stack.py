@@ -128,7 +128,7 @@ class ObservedStack:
 
 @dataclass(frozen=True)
 class _Parts:
-    """What is read for an `ObservedStack`.
+    """The stacks of all surfaces, for an `ObservedStack`.
 
     Attributes:
         cages: of the distinct blocks, as in `ShownStack`.

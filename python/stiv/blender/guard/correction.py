@@ -51,7 +51,7 @@ class ToolCorrection:
         corrected: does the scene differ from the tool's result?
         names: objects that the tool changed.
         blocking: objects in contact.
-        cut: did it stop where the topology changes?
+        cut: names of the objects that follow the controls, if it stopped where the topology of one changes.
         stopped: did it end at the deadline, short of the tool's result?
         message: why the correction is incomplete; "" if it is complete.
         notes: about faces that no edit tests and that cut each other now, see `BlenderEdit.untested_notes`.
@@ -64,7 +64,7 @@ class ToolCorrection:
     blocking: tuple[str, ...] = ()
     message: str = ""
     deformers: tuple[str, ...] = ()
-    cut: bool = False
+    cut: tuple[str, ...] = ()
     stopped: bool = False
     notes: tuple[str, ...] = ()
 
@@ -121,7 +121,8 @@ def correct_after_tool_steps(
         messages += [outcome.edit.reset_note for outcome in outcomes]
     blocking = sorted({name for outcome in outcomes for name in outcome.blocking})
     message = next(filter(None, messages), "")
-    cut, stopped = (any(flags) for flags in zip(*((each.cut, each.stopped) for each in outcomes), strict=True))
+    cut = next((outcome.cut for outcome in outcomes if outcome.cut), ())
+    stopped = any(outcome.stopped for outcome in outcomes)
     return ToolCorrection(True, names, tuple(blocking), message, deformers, cut, stopped, _notes_of(outcomes))
 
 
@@ -139,7 +140,7 @@ class Outcome:
         reached: does the scene show its goal?
         blocking: objects in contact.
         message: why the result could not be written, or notes; may be "".
-        cut: did it stop where the topology changes?
+        cut: as in ToolCorrection.
         stopped: did it end at the deadline, short of its goal?
     """
 
@@ -147,7 +148,7 @@ class Outcome:
     reached: bool
     blocking: tuple[str, ...]
     message: str
-    cut: bool
+    cut: tuple[str, ...]
     stopped: bool
 
 
@@ -302,8 +303,11 @@ def correction_settings(settings: EditSettings) -> EditSettings:
 def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
     """Steps of an edit toward a goal of all controls, (m, 3), in steps of a drag, and its write.
 
-    The edit has `correction_settings`. The deadline `end` holds for solves; what is accepted then is written.
+    The edit has `correction_settings`. The deadline `end` holds for solves; what is accepted then is written. After it,
+    the scene shows the start of the edit.
     """
+    if is_over(end):
+        return Outcome(edit, False, (), "", (), True)
     solving_end = deadline_after(SOLVING * time_left(end))
     steps = _steps_to(edit, goal)
     results = []
@@ -321,7 +325,7 @@ def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
     report = yield from edit.write_steps(end)
     blocking = tuple(name for result in results[-1:] for name in result.blocking)
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
-    cut = any(map(is_cut_by_topology, results[-1:]))
+    cut = tuple(sorted(edit.moving)) if any(map(is_cut_by_topology, results[-1:])) else ()
     is_reached = reached and report.passed and report.result is None
     return Outcome(edit, is_reached, blocking, message, cut, not reached and is_over(solving_end))
 

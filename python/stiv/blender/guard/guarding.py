@@ -50,7 +50,7 @@ class GuardedResult:
         wrote: does the scene differ from the tool's result?
         corrected, placed: names of the objects that an edit corrected, and of new ones put at the nearest free place.
         blocking: names of the objects in contact.
-        cut: did a correction stop where the topology changes?
+        cut: names of the objects that moved, if a correction stopped where the topology of one changes.
         stopped: did a correction end at the deadline, short of the tool's result?
         notes: about faces that no correction tests and that cut each other now.
         pairs: the intersections that are left, without excluded pairs.
@@ -62,7 +62,7 @@ class GuardedResult:
     corrected: list[str] = field(default_factory=list)
     placed: list[str] = field(default_factory=list)
     blocking: list[str] = field(default_factory=list)
-    cut: bool = False
+    cut: tuple[str, ...] = ()
     stopped: bool = False
     notes: list[str] = field(default_factory=list)
     pairs: tuple[FacePair, ...] = ()

@@ -62,7 +62,7 @@ def correct_poses_steps(
     names = tuple(state.reference.name for _, state in pairs)
     message = next((each.message for each in found if each.message), "")
     notes = tuple(note for each in (bones, keys) if each is not None for note in each.notes)
-    cut, stopped = any(each.cut for each in found), any(each.stopped for each in found)
+    cut, stopped = next((each.cut for each in found if each.cut), ()), any(each.stopped for each in found)
     return ToolCorrection(bool(found), names, tuple(sorted(blocking)), message, (), cut, stopped, notes)
 
 

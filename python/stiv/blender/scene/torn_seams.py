@@ -60,9 +60,8 @@ def _cuts_at_seams(assembly: Assembly, number: int, excluded: Exclusions, q: Flo
     rows = np.isin(mesh.faces, np.array(sorted(frozenset().union(*pairs)), np.int32))
     first, last = assembly.starts[number : number + 2].tolist()
     corners, faces = assembly.vertices(number)[mesh.triangles[rows]] - np.int32(first), mesh.faces[rows]
-    cut = pairs & self_cuts(q[first:last], corners, faces, threads)
-    if not cut:
-        return set()
     start = assembly.positions[first:last]
     touching = seam_pairs(find_seams(start, corners, ROUNDING), corners, faces)
-    return cut.intersection(map(frozenset, touching.tolist())) - self_cuts(start, corners, faces, threads)
+    at_seams = pairs.intersection(map(frozenset, touching.tolist()))
+    cut = at_seams & self_cuts(q[first:last], corners, faces, threads) if at_seams else set()
+    return cut - self_cuts(start, corners, faces, threads) if cut else set()
