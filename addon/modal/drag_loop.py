@@ -250,6 +250,8 @@ class DragLoop:
         """Finish. If no state was accepted, write the start: an operator without a report would solve again."""
         if self.result is not None and self.writer.report is None and self.writer.written is None:
             self._write(is_new=False)
+            if self._task is not None:  # it writes in steps, and this is called again
+                return
         self.progress = Progress.FINISHED
 
     def _solves_on(self) -> bool:
@@ -497,7 +499,8 @@ class DragLoop:
     def _write(self, is_new: bool) -> None:
         """Write the accepted state: a new one without its complete test while the mouse moves.
 
-        If it fails, it is passed over. To search its path for a state that passes would take several frames.
+        If it fails, it is passed over. To search its path for a state that passes would take several frames. After the
+        confirmation, this search takes turns with the window.
         """
         assert self.edit is not None
         with self.writer.writing():
@@ -505,7 +508,14 @@ class DragLoop:
                 if self.writer.write_beside(self.edit, self.result, self._start_next_solve):
                     return
                 self._end_solve()
+            if self._confirmed:
+                self._run(self.writer.write_steps(self.edit, self.result), self._take_written)
+                self._advance_task(FRAME)
+                return
             self.result = self.writer.write(self.edit, self.result)
+
+    def _take_written(self, result: EditResult | None) -> None:
+        self.result = result
 
     def _start_next_solve(self) -> None:
         """Start the solve for a new goal, if there is one that takes too long for the same frame."""

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..stiv_blender import Edit, EditResult, WriteReport
+    from ..stiv_blender import Edit, EditResult, Steps, WriteReport
 
 MAX_REJECTED = 2  # states in a row that fail in Blender's evaluation while the mouse moves: the next one may pass
 
@@ -53,9 +53,21 @@ class DragWriter:
 
     def write(self, edit: Edit, result: EditResult | None) -> EditResult | None:
         """Write the accepted state and test it completely; returns its result, which is new if it was solved again."""
+        self._begin_complete()
+        return self._take(edit, edit.write(), result)
+
+    def write_steps(self, edit: Edit, result: EditResult | None) -> Steps[EditResult | None]:
+        """Steps of `write`; the scene shows the last written state between them."""
+        self._begin_complete()
+        report = yield from edit.write_steps()
+        return self._take(edit, report, result)
+
+    def _begin_complete(self) -> None:
         self.is_due = self.is_incomplete = False
         self._rejected = 0
-        self.report = edit.write()
+
+    def _take(self, edit: Edit, report: WriteReport | None, result: EditResult | None) -> EditResult | None:
+        self.report = report
         if self.report is not None and self.report.result is not None:
             result = self.report.result
         self.written = result if self.report is None or not self.report.message else None

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import pytest
 from fake_edit import FakeEdit
-from scripted_drag import follow, new_drag, pause
+from scripted_drag import follow, move_to, new_drag, pause
 
 from stiv_addon.modal import drag_loop
 from stiv_addon.modal.drag_loop import Progress
@@ -131,3 +131,34 @@ def test_an_exception_beside_a_solve_restores_and_ends(call: str) -> None:
     drag = new_drag(edit)
     follow(drag, 10, 20, 30)
     assert drag.progress is Progress.CANCELLED and edit.calls[-1] == "restore" and str(drag.error) == "broken"
+
+
+@pytest.mark.parametrize("stops", [False, True])
+def test_the_last_state_is_written_in_turns_which_esc_shortens(stops: bool) -> None:
+    """Where Blender's evaluation fails the test, an older state is searched, for seconds in large scenes."""
+    edit = FakeEdit(delays={"write": 5})
+    drag = new_drag(edit)
+    follow(drag, 10)
+    shown = edit.shown
+    drag.handle(Event("LEFTMOUSE"))
+    turns = 0
+    while drag.progress is Progress.FINISHING:
+        assert edit.shown == shown and turns < 20
+        turns += 1
+        if stops and turns == 2:
+            drag.handle(Event("ESC"))
+        drag.tick()
+    assert drag.progress is Progress.FINISHED and drag.error is None
+    assert turns < 4 if stops else turns > 4
+    assert edit.shown == edit.accepted == 0.1 and drag.writer.written is drag.result and edit.calls[-1] == "write"
+
+
+def test_an_error_while_the_last_state_is_written_restores_the_start() -> None:
+    edit = FakeEdit(delays={"write": 3}, failing={"write": RuntimeError("the scene has changed")})
+    drag = new_drag(edit)
+    drag.handle(move_to(10))
+    drag.handle(Event("LEFTMOUSE"))
+    while not drag.progress.ended:
+        drag.tick()
+    assert drag.progress is Progress.CANCELLED and str(drag.error) == "the scene has changed"
+    assert edit.calls[-1] == "restore" and edit.shown == 0.0

@@ -11,7 +11,7 @@ import pytest
 from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, check_scene, deadlines, read_surface
+from stiv.blender import BlenderEdit, EditSettings, Task, check_scene, deadlines, read_surface
 from stiv.blender.edit import state_writer
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -161,6 +161,26 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
         found[is_cancelled] = len(shown), evaluated(quad)[WINGS, 2].min()
     assert found[True][0] < found[False][0] and 0.89 < found[False][1] < 1.1
     assert found[True][1] <= found[False][1]
+
+
+def test_a_write_that_is_cancelled_ends_at_a_state_that_passes() -> None:
+    """At any time: while a session with the flipped triangles is made, while it solves, or in the search."""
+    for turns in range(7):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        quad = add_quad(0)
+        add_post()
+        edit = begin_with_wings(quad)
+        for height in np.linspace(0.1, 2, 20):
+            edit.drag(shift(z=height))
+        task = Task(edit.write_steps())
+        ended = any(task.advance() for _ in range(turns))
+        task.cancel()
+        while not task.advance(0.01):
+            pass
+        assert check_scene(bpy.context).pairs == () and edit.is_shown()
+        if ended:
+            break
+    assert turns > 1
 
 
 def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:

@@ -155,7 +155,11 @@ class StateWriter:
             if verification.passed or (solved_again and is_over(end)):
                 break
             self.write(self._solver.trail.written)
-            if not (yield from self._solver.retry_with(verification.flips, end)):
+            try:
+                is_solved = yield from self._solver.retry_with(verification.flips, end)
+            except stiv.CancelledError:  # while the session with the flips was made; the old one stays
+                is_solved = False
+            if not is_solved:
                 break
             solved_again = True
             verification = self._write_session()
