@@ -7,6 +7,7 @@ terms, at (x, y, z) / w in units of the last binary place of a pair of triangles
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Sequence
 
@@ -21,6 +22,9 @@ NEAR = 1e-5  # in sizes of a pair: a vertex further from an edge is not on it
 DEEP = 1e-3  # barycentric coordinates above this are inside a triangle despite rounding
 INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
 
+MOST_RESULTS = 64  # one byte for each pair
+_results: dict[bytes, NDArray[np.bool_]] = {}  # by digests of corners
+
 
 def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: Indices) -> NDArray[np.bool_]:
     """Return which intersecting pairs of triangles, (k, 2), only share points of an edge of each, (k,) bool.
@@ -28,9 +32,20 @@ def edge_contacts(positions: NDArray[np.floating], triangles: Indices, pairs: In
     positions  (n, 3) of one mesh
     triangles  (f, 3)
 
-    Edges that cross at a point inside both are not a seam. A triangle without area counts as an edge.
+    Edges that cross at a point inside both are not a seam. A triangle without area counts as an edge. The last results
+    are stored: copies of a mesh have the same, wherever they are.
     """
     corners = positions[triangles[pairs]].astype(np.float64)  # (k, 2, 3, 3)
+    key = hashlib.blake2b(corners.tobytes(), digest_size=32).digest()
+    if key not in _results:
+        while len(_results) >= MOST_RESULTS:
+            del _results[next(iter(_results))]
+        _results[key] = _find(corners)
+    return _results[key].copy()
+
+
+def _find(corners: Floats) -> NDArray[np.bool_]:
+    """Return which pairs, (k, 2, 3, 3), only share points of an edge of each."""
     found = _vertex_near_edge(corners)
     found[found] = ~_overlap_clearly(corners[found])
     for row in np.flatnonzero(found):

@@ -6,7 +6,7 @@ import pytest
 from oracles import rational
 
 import stiv
-from stiv.edge_contacts import edge_contacts
+from stiv.edge_contacts import MOST_RESULTS, edge_contacts
 from stiv.seams import Seams, common_seams, find_seams, seam_pairs
 
 
@@ -121,6 +121,19 @@ def test_contacts_along_edges_differ_from_intersections(other, expected, scale):
     assert stiv.find_intersections(q, triangles).tolist() == [[0, 1]]
     for turned in ([0, 1, 2, 3, 4, 5], [1, 2, 0, 5, 4, 3], [3, 4, 5, 2, 1, 0]):
         assert edge_contacts(q[turned], triangles, np.array([[0, 1]])).tolist() == [expected]
+
+
+def test_contacts_of_copies_are_those_of_each_place() -> None:
+    """Results are stored by shape, for a limited number of shapes; nobody can change them."""
+    random = np.random.default_rng(3)
+    pairs = np.array([[0, 1]])
+    for _ in range(3):
+        for number in range(MOST_RESULTS + 5):
+            other = [(1, 0, 0), (3, 0, 0), (2, 1 if number % 3 == 0 else -1, number)]
+            q = np.array([*FLAT, *other], float)
+            found = edge_contacts(q, np.arange(6).reshape(2, 3), pairs)
+            assert found.tolist() == [number > 0 or other[2][1] < 0]
+            found[:] = random.integers(2)
 
 
 def test_seams_are_divided_where_values_differ() -> None:

@@ -2,6 +2,7 @@
 """Makes the session that solves for all control sets of an assembly."""
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 import bpy
@@ -122,10 +123,19 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
         super().__init__(str(error) if len(error.pairs) else loose_text(assembly) or str(error))
         self.pairs: Indices = error.pairs
-        self.objects = intersecting_faces(assembly, error.pairs)
-        self.short = intersection_text(*self.objects[0]) if self.objects else ""
+        self._assembly = assembly
         if intersects_only_in_render(assembly, error):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
+
+    @cached_property
+    def objects(self) -> tuple[tuple[str, str, int], ...]:
+        """See the attributes. Most starts that intersect begin again, with exclusions, and need no message."""
+        return intersecting_faces(self._assembly, self.pairs)
+
+    @cached_property
+    def short(self) -> str:
+        """See the attributes."""
+        return intersection_text(*self.objects[0]) if self.objects else ""
 
 
 def loose_text(assembly: Assembly) -> str:

@@ -189,9 +189,12 @@ class EditSolver:
             if self._session is not None:
                 raise
             moving = self._moving(assembly)
+            turns = Turns()
             pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, moving)
             self.intersecting = self.excluded = pairs
+            yield from turns.take()
             loose = find_touching_parts(assembly, moving, self._settings.threads)
+            yield from turns.take()
             self.loose_part_notes = loose_part_notes(assembly, loose)
             self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)
