@@ -145,6 +145,8 @@ class DragLoop:
         self._aimed_at: State | None = None  # state of the last goal
         self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
+        self._applies = False  # confirmed with typed values
+        self._returned_at = math.inf  # when the last tick gave the interface its turn
         self._run(calls.begin(state.request), self._take_first_edit)
         began = time.perf_counter()
         starts_job = not self._advance_task(0.0)  # reads the scene, which takes about as long as writing and drawing it
@@ -167,8 +169,18 @@ class DragLoop:
 
     @property
     def fraction(self) -> float:
-        """The fraction of a start, or of the solve after the confirmation, that is done."""
+        """The fraction of a start or of typed values that is done; of solves after a drag, of the time that they have.
+
+        Each of these has a fraction of its own, and nobody knows how many follow.
+        """
+        if self._confirmed and self.edit is not None and not self._applies:
+            return min(self.seconds_confirmed / FINISHING_TIME, 1.0)
         return self._task.progress.fraction if self._task is not None else 1.0
+
+    @property
+    def seconds_confirmed(self) -> float:
+        """Seconds since the confirmation."""
+        return max(0.0, time.perf_counter() - self._confirmed_at)
 
     def handle(self, event: Event) -> Effect:
         """Take one event; returns the effect that it requested."""
@@ -189,7 +201,19 @@ class DragLoop:
 
     def tick(self) -> Progress:
         """Solve for the latest goal if it is not reached, and write the result."""
-        return self._guarded(self._advance)
+        progress = self._guarded(self._advance)
+        self._returned_at = time.perf_counter()
+        return progress
+
+    @property
+    def _wait(self) -> float:
+        """Seconds that a tick waits for a solve: after the confirmation, as long as Blender took since the last tick.
+
+        Many solves wait for the evaluations of Blender's thread. Otherwise a slow drawing would leave them little time.
+        """
+        if not self._confirmed:
+            return FRAME
+        return min(max(FRAME, time.perf_counter() - self._returned_at), MAX_BUDGET)
 
     def abort(self, reason: Exception) -> Progress:
         """Restore the start and end the drag."""
@@ -235,7 +259,7 @@ class DragLoop:
 
     def _advance(self) -> None:
         self._end_slow_task()
-        end, solves = time.perf_counter() + FRAME, self._solves
+        end, solves = time.perf_counter() + self._wait, self._solves
         while solves == self._solves and (self._task is not None or self._begin_work()):
             if not self._advance_task(max(0.0, end - time.perf_counter())):
                 return
@@ -403,7 +427,7 @@ class DragLoop:
     def _is_late(self, found: EditResult) -> bool:
         """Whether to keep what the user sees, which obstacles hold. A free motion ends at its goal, however late."""
         meets_obstacles = len(found.events) > 0 or found.counters.get("events", 0) > 0
-        return time.perf_counter() - self._confirmed_at > FINISHING_TIME and meets_obstacles
+        return self.seconds_confirmed > FINISHING_TIME and meets_obstacles
 
     def _end_late(self) -> None:
         """End the solves without a comparison."""
@@ -483,7 +507,7 @@ class DragLoop:
             self.edit.restore()
         self._pending = self.writer.is_due = False
         self._refinement = Refinement.NONE  # by the steps
-        self.result = None
+        self.result, self._applies = None, True
         self._run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
         return True
 

@@ -243,8 +243,7 @@ class DragOperator(Mixin):
         edit, result, report = drag.edit, drag.result, drag.writer.report
         if edit is not None and result is not None and report is not None:
             insert_keyframes(context, edit)
-            stopped = drag.stopped or result.status == "budget"  # nothing solves on
-            outcome = translate("stopped") if stopped else end_text(result, edit)
+            outcome = self._outcome(edit, result)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report, outcome=outcome)
             values["outcome"] = drag_results.store(dragged)
             context.window_manager.stiv_last_edit = last_edit.describe(result, report)
@@ -254,6 +253,15 @@ class DragOperator(Mixin):
         store_snap(context, drag.state)
         getattr(bpy.ops.stiv, drag.state.kind)("EXEC_DEFAULT", True, **values)
         return {"FINISHED"}
+
+    def _outcome(self, edit: stiv_blender.Edit, result: stiv_blender.EditResult) -> str:
+        """The message at the end. Nothing solves on, even if the last solve used up its time."""
+        if self._drag.stopped:
+            return translate("stopped")
+        if result.status == "budget":
+            text = translate("stopped after {} seconds, short of the goal")
+            return text.format(round(self._drag.seconds_confirmed))
+        return end_text(result, edit)
 
     def _leave(self, context: bpy.types.Context) -> None:
         running.end()

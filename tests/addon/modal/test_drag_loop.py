@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+import time
+
 import pytest
 from fake_edit import FakeEdit
 from hypothesis import given
@@ -7,7 +9,7 @@ from scripted_drag import follow, move_to, new_drag, pause
 from test_event_handling import EVENTS
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import Progress
+from stiv_addon.modal.drag_loop import DragLoop, Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.repeated_solves import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW
@@ -386,6 +388,40 @@ def test_a_slow_comparison_with_the_edit_from_the_start_ends_soon_after_the_conf
     for _ in range(3):
         drag.tick()
     assert drag.progress is Progress.FINISHED and not drag.stopped and edit.shown == edit.accepted == 0.3
+
+
+def test_the_progress_after_the_confirmation_never_goes_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Several solves follow, each with a fraction of its own."""
+    monkeypatch.setattr(drag_loop, "FINISHING_TIME", 0.1)
+    drag = new_drag(FakeEdit(statuses=["budget"] * 8, furthest=0.1, delays={"drag": 4, "settle": 4}))
+    drag.handle(move_to(90))
+    drag.tick()
+    drag.handle(Event("LEFTMOUSE"))
+    seen = []
+    while drag.progress is Progress.FINISHING:
+        seen.append(drag.fraction)
+        drag.tick()
+    assert len(seen) > 4 and seen == sorted(seen) and seen[0] >= 0.0 and seen[-1] <= 1.0
+
+
+@pytest.mark.parametrize("confirmed", [True, False])
+def test_a_tick_after_the_confirmation_waits_as_long_as_blender_took_between_ticks(
+    confirmed: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A solve may need Blender's thread, which slow drawing would leave no time. Before, the mouse goes first."""
+    drag = new_drag(FakeEdit(delays={"drag": 1000}))
+    drag.handle(move_to(90))
+    drag.tick()
+    if confirmed:
+        drag.handle(Event("LEFTMOUSE"))
+    waits: list[float] = []
+    monkeypatch.setattr(DragLoop, "_advance_task", lambda drag, seconds: waits.append(seconds))
+    for between in (0.0, 0.06, 0.3):
+        drag.tick()
+        time.sleep(between)
+    drag.tick()
+    expected = [drag_loop.FRAME, drag_loop.FRAME, 0.06, drag_loop.MAX_BUDGET] if confirmed else [drag_loop.FRAME] * 4
+    assert waits == pytest.approx(expected, abs=0.01)
 
 
 @pytest.mark.parametrize("touching", [True, False])
