@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 import bpy
 
-from .. import window_io
+from .. import running, window_io
+from ..reports import say
 
 TICK = 0.05  # seconds between two looks at the mouse
 REST = 5  # ticks without a motion after which the mouse rests: slow drawing delays motions, but ticks with them
@@ -34,6 +35,7 @@ class STIV_OT_popup(bpy.types.Operator):
         self._still = self._waited = 0  # ticks since the last motion, and since the beginning
         self._timer = window_io.start_timer(context, TICK)
         context.window_manager.modal_handler_add(self)
+        running.begin(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -50,11 +52,12 @@ class STIV_OT_popup(bpy.types.Operator):
         if shown is None or next_step == "cancel":
             return {"CANCELLED"}
         context.window_manager.popup_menu(shown[0], title=shown[1], icon="ERROR")
-        self.report({"INFO"}, shown[1])  # stays in the status bar when the popup is closed
+        say(self, "INFO", shown[1])  # stays in the status bar when the popup is closed
         return {"FINISHED"}
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Stop the timer; Blender calls this when it ends the operator, for instance to load a file."""
+        running.end()
         window_io.stop_timer(context, self._timer)
 
 
