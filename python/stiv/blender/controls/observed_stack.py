@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 import stiv
+from stiv.blender.controls.affine_stack import Rows
 from stiv.blender.controls.held_vertices import HeldVertices, find_held_vertices
 from stiv.blender.controls.stack_block import BlockSettings, StackBlock
 from stiv.blender.controls.stack_refusals import check_projections
@@ -51,7 +52,7 @@ class ObservedStack:
         """Take the parts that `read_steps` has read. Only inside `kept_twins`."""
         self._frame, self._start, self._held = frame, controls, held
         self._cages, self._blocks = parts.cages, parts.blocks
-        self._observed = stiv.observed(self._blocks.evaluate, self._blocks.jacobian())
+        self._observed = stiv.observed(self._blocks.evaluate, self._blocks.jacobian_of(parts.rows))
         self._ends = self._find_ends(parts.places, parts.settings)
         self.deformation = self.deformation_of(None)
 
@@ -72,9 +73,13 @@ class ObservedStack:
             blocks, turns = [], Turns()
             for first, cage in zip(firsts, cages, strict=True):
                 start = controls if cage is None else cage.surface(controls)
-                blocks.append(StackBlock(settings[first], frame, start, held))
+                blocks.append((yield from StackBlock.read_steps(settings[first], frame, start, held, turns)))
                 yield from turns.take()
-            parts = _Parts(cages, _Blocks(blocks), [order.index(key) for key in keys], settings)
+            rows = []
+            for block in blocks:
+                rows.append(block.rows())
+                yield from turns.take()
+            parts = _Parts(cages, _Blocks(blocks), rows, [order.index(key) for key in keys], settings)
             return cls(frame, controls, held, parts)
 
     def hold(self, controls: Floats) -> Floats:
@@ -133,12 +138,14 @@ class _Parts:
     Attributes:
         cages: of the distinct blocks, as in `ShownStack`.
         blocks: the distinct ones.
+        rows: the rows of the Jacobian of each block.
         places: the number of its block for each surface.
         settings: of each surface.
     """
 
     cages: Sequence[stiv.Deformation | None]
     blocks: _Blocks
+    rows: Sequence[Rows]
     places: Sequence[int]
     settings: Sequence[BlockSettings]
 
@@ -168,10 +175,13 @@ class _Blocks:
         return np.concatenate(feasible) if self.have_surface else None
 
     def jacobian(self) -> tuple[Indices, Indices, Floats, tuple[int, int]] | stiv.Weights:
-        """The rows of all blocks; weights if x, y and z act alike in all of them."""
-        controls = self.blocks[0].controls
+        """The present Jacobian."""
         with kept_twins():
-            rows = [block.rows() for block in self.blocks]
+            return self.jacobian_of([block.rows() for block in self.blocks])
+
+    def jacobian_of(self, rows: Sequence[Rows]) -> tuple[Indices, Indices, Floats, tuple[int, int]] | stiv.Weights:
+        """The rows of all blocks together; weights if x, y and z act alike in all of them."""
+        controls = self.blocks[0].controls
         firsts = np.cumsum([0, *(len(indices) for _, indices, _ in rows)])
         starts = [indptr[:-1] + first for (indptr, _, _), first in zip(rows, firsts, strict=False)]
         indptr = np.append(np.concatenate(starts), firsts[-1]).astype(np.int32)

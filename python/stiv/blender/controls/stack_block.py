@@ -31,6 +31,7 @@ from stiv.blender.scene.modifier_stack import StackEnd, SubdivisionStage, read_e
 from stiv.blender.scene.position_test import keep_positions, random_moves
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin, different_objects, kept_twin, kept_twins
+from stiv.task import Steps, Turns, run
 
 STEP = 0.03  # of the differences for a Jacobian, in lengths of an edge
 FURTHEST = 1e6  # motion that is evaluated, in sizes of the mesh: beyond it, single precision loses the shape
@@ -96,6 +97,26 @@ class StackBlock:
 
         Raises InputError if the topology changes with small moves, or the surface does not follow the vertices.
         """
+        run(self._read_steps(settings, frame, positions, held))
+
+    @classmethod
+    def read_steps(
+        cls, settings: BlockSettings, frame: Floats, positions: Floats, held: HeldVertices, turns: Turns
+    ) -> Steps[StackBlock]:
+        """Steps of the constructor, which take turns between evaluations."""
+        block = cls.__new__(cls)
+        yield from block._read_steps(settings, frame, positions, held, turns)
+        return block
+
+    def _read_steps(
+        self,
+        settings: BlockSettings,
+        frame: Floats,
+        positions: Floats,
+        held: HeldVertices,
+        turns: Turns | None = None,
+    ) -> Steps[None]:
+        turns = turns or Turns()
         self._settings, self._frame, self._held, self._rest = settings, frame, held, positions
         ob, twin = settings.reference.find(), settings.open_twin()
         self._shown_frame = as_matrix(ob.matrix_world)
@@ -106,15 +127,21 @@ class StackBlock:
         start, *moves = [
             self._stored(transform_points(frame, each)) for each in random_moves(self._local, (*SMALL, LARGE))
         ]
+        yield from turns.take()
         check_twin(ob, twin, [start, *moves[:-1]], self._agree)
+        yield from turns.take()
+        ob = settings.reference.find()
         check_diagonals(ob, twin, [start, moves[-1]], self._agree)
         self._start = twin.evaluate(self._local)
+        yield from turns.take()
+        ob = settings.reference.find()
         self.count = len(self._start.positions)
         anchors = find_anchors(twin, self._start, self._local, STEP * _edge_length(ob, self._local))
         self.anchors = anchors if held.leaders is None else held.leaders[anchors]
         self._last = positions
         self._frames = np.broadcast_to(np.eye(3), (self.count, 3, 3))
-        block = self._modifiers(ob)
+        yield from turns.take()
+        block = self._modifiers(settings.reference.find())
         self.exact = self._find_exact_map(block)
         self._is_computed = all(each.type != "WELD" for each in block)
 
