@@ -186,13 +186,13 @@ def touches_others(pairs: Iterable[FacePair], names: Collection[str]) -> bool:
 
 
 def place_freely(
-    context: bpy.types.Context, settings: EditSettings, known: KnownIntersections, names: Collection[str]
+    context: bpy.types.Context, settings: EditSettings, known: KnownIntersections, names: Collection[str], end: float
 ) -> Steps[bool]:
     """Steps that put new objects, which stay together, at the nearest free place.
 
-    False, with nothing changed, without success.
+    end: the deadline. False, with nothing changed, without success.
     """
-    translation = yield from find_free_place(context, known.left_out(settings), names)
+    translation = yield from find_free_place(context, known.left_out(settings), names, end)
     if translation is None or not translation.any():
         return False
     roots = [ob for ob in map(bpy.data.objects.get, names) if ob and (not ob.parent or ob.parent.name not in names)]
@@ -216,9 +216,13 @@ def place_part_freely(
     known: KnownIntersections,
     reference: ObjectReference,
     added: Flags,
+    end: float,
 ) -> Steps[bool]:
-    """Steps that put a new part of a mesh at the nearest free place; False, with nothing changed, without success."""
-    translation = yield from find_free_place(context, known.left_out(settings), (), {reference.name: added})
+    """Steps that put a new part of a mesh at the nearest free place; False, with nothing changed, without success.
+
+    end: the deadline.
+    """
+    translation = yield from find_free_place(context, known.left_out(settings), (), end, {reference.name: added})
     if translation is None or not translation.any():
         return False
     before = read_object(reference.find())

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import itertools
-import time
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
+from stiv.blender.deadlines import deadline_after, is_over
 from stiv.blender.guard.new_parts import split_parts
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -29,19 +29,21 @@ DIRECTIONS = sorted(
 FIRST_STEP, GROWTH = 1 / 64, 1.5  # of the new objects' diagonal; each step out is longer
 BISECTIONS = 8
 MARGIN = 1e-3  # added to the shortest free distance
-TIME_LIMIT = 2.0  # seconds; then the best place so far is returned, or the first one found later
+TIME_LIMIT, LEAST_TIME = 2.0, 0.5  # seconds of a search; the second holds after the deadline
 
 
 def find_free_place(
     context: bpy.types.Context,
     settings: EditSettings,
     names: Collection[str],
+    end: float,
     parts: Mapping[str, Flags] | None = None,
 ) -> Steps[Floats | None]:
     """Steps to the shortest translation found, (3,), that frees the named objects from all others; None without one.
 
-    parts: flags of the vertices that move, by object, instead of whole objects. All that moves stays together, and
-    intersections within it are not counted. Places inside a closed surface do not count. A free place gives 0.
+    end: the deadline; then the best place so far is returned, or the first one found later. parts: flags of the vertices
+    that move, by object, instead of whole objects. All that moves stays together, and intersections within it are not
+    counted. Places inside a closed surface do not count. A free place gives 0.
     """
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
     split = split_parts(scene.meshes, parts or {})
@@ -53,7 +55,7 @@ def find_free_place(
         return None
     if search.is_free(np.zeros(3)):
         return np.zeros(3)
-    best, deadline = np.inf, time.monotonic() + TIME_LIMIT
+    best, deadline = np.inf, min(deadline_after(TIME_LIMIT), max(end, deadline_after(LEAST_TIME)))
     found = None
     for direction in DIRECTIONS:
         distance = yield from search.free_distance(direction, best, deadline)
@@ -98,7 +100,7 @@ class _Search:
             yield None
             low, step = high, step * GROWTH
             high += step
-            is_late = np.isfinite(limit) and time.monotonic() > deadline
+            is_late = np.isfinite(limit) and is_over(deadline)
             if is_late or low > min(limit, self.extent):
                 return float("inf")
         for _ in range(BISECTIONS):

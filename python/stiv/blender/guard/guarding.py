@@ -277,7 +277,7 @@ def _guard_rebuilt(
             return
         corrected = bool((yield from correct_part(context, settings, known, reference, added, origins, end)))
     is_left = reference.name in fresh_objects(context, settings, known)
-    placed = is_left and (yield from place_part_freely(context, settings, known, reference, added))
+    placed = is_left and (yield from place_part_freely(context, settings, known, reference, added, end))
     result.wrote |= corrected or placed
     if placed or corrected:
         (result.placed if placed else result.corrected).append(reference.name)
@@ -314,6 +314,6 @@ def _guard_new_objects(
         yield None
         if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
             return
-    if (yield from place_freely(context, settings, accepted.known, created)):
+    if (yield from place_freely(context, settings, accepted.known, created, end)):
         result.wrote = True
         result.placed += sorted(created)
