@@ -41,7 +41,7 @@ def find_free_place(
 ) -> Steps[Floats | None]:
     """Steps to the shortest translation found, (3,), that frees the named objects from all others; None without one.
 
-    end: the deadline; then the best place so far is returned, or the first one found later. parts: flags of the vertices
+    end: the deadline; then the best place so far is returned, or the first one found later. parts: flags of vertices
     that move, by object, instead of whole objects. All that moves stays together, and intersections within it are not
     counted. Places inside a closed surface do not count. A free place gives 0.
     """
