@@ -9,6 +9,7 @@ import pytest
 import stiv
 from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.shape import joined
+from stiv import separating
 from stiv.separating import find_separation, find_separation_steps
 from stiv.task import Task
 
@@ -65,3 +66,17 @@ def test_steps_give_turns_between_the_tests_and_the_same_translation() -> None:
         fractions.append(task.progress.fraction)
     assert turns > 100 and fractions == sorted(fractions) and fractions[-1] > 0.9
     assert np.array_equal(task.result, find_separation(surface, q, moving))
+
+
+@pytest.mark.parametrize("looks", [0, 1, 5, 20, 200])
+def test_a_time_limit_leaves_the_shortest_clear_way_so_far(looks: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    ball = icosphere(2)
+    surface, q, moving = two(ball, ball.moved((1.3, 0.2, 0.1)))
+    whole, left = find_separation(surface, q, moving), iter(range(looks))
+    monkeypatch.setattr(separating, "is_over", lambda end: next(left, None) is None)
+    found = find_separation(surface, q, moving, time_budget=1.0)
+    if looks == 0:
+        assert found is None
+    else:
+        assert clear_after(surface, q, moving, found)
+        assert np.linalg.norm(found) >= np.linalg.norm(whole)

@@ -484,6 +484,8 @@ MESSAGES = {
     "strand {}": "发丝 {}",
     "the mode changed during the drag": "拖动期间模式已改变",
     "time limit reached, nothing changed": "已到时间限制，没有改动",
+    "time limit reached, result so far kept; run it again to continue": "已到时间限制，保留目前结果；再次运行可继续",
+    "time limit reached; raise it for a shorter way": "已到时间限制；延长时间可缩短移动距离",
     "turned {}°": "转动了 {}°",
     "vertex {}": "顶点 {}",
     "yields: both": "退让：双方",

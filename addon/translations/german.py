@@ -484,6 +484,8 @@ MESSAGES = {
     "strand {}": "Strang {}",
     "the mode changed during the drag": "der Modus änderte sich beim Ziehen",
     "time limit reached, nothing changed": "Zeitlimit erreicht, nichts ist verändert",
+    "time limit reached, result so far kept; run it again to continue": "Zeitlimit erreicht, Ergebnis bleibt; zum Fortsetzen erneut ausführen",
+    "time limit reached; raise it for a shorter way": "Zeitlimit erreicht; mit mehr Zeit wird der Weg kürzer",
     "turned {}°": "um {}° gedreht",
     "vertex {}": "Vertex {}",
     "yields: both": "weicht aus: beide",

@@ -484,6 +484,8 @@ MESSAGES = {
     "strand {}": "ストランド {}",
     "the mode changed during the drag": "ドラッグ中にモードが変わりました",
     "time limit reached, nothing changed": "時間切れです。何も変わっていません",
+    "time limit reached, result so far kept; run it again to continue": "時間切れです。途中の結果を残しました。再実行で続けられます",
+    "time limit reached; raise it for a shorter way": "時間切れです。時間を延ばすと移動が短くなります",
     "turned {}°": "{}°回転",
     "vertex {}": "頂点 {}",
     "yields: both": "避ける側: 両方",

@@ -484,6 +484,8 @@ MESSAGES = {
     "strand {}": "가닥 {}",
     "the mode changed during the drag": "드래그 중에 모드가 바뀜",
     "time limit reached, nothing changed": "시간 제한에 도달, 변경 없음",
+    "time limit reached, result so far kept; run it again to continue": "시간 제한에 도달, 지금까지의 결과 유지; 다시 실행하면 계속됨",
+    "time limit reached; raise it for a shorter way": "시간 제한에 도달; 시간을 늘리면 이동이 더 짧아짐",
     "turned {}°": "{}° 회전함",
     "vertex {}": "버텍스 {}",
     "yields: both": "비킴: 둘 다",

@@ -61,6 +61,7 @@ py::dict dict_of(const ContractionResult& result) {
   values["positions"] = result.positions;
   values["free"] = result.free;
   values["pairs"] = result.pairs;
+  values["out_of_time"] = result.out_of_time;
   return values;
 }
 
@@ -121,7 +122,7 @@ auto contraction_of(const SurfacePointer& surface, const Controls& p, const std:
     try {
       return contract(caged_surface(surface, deformation, cage), p, moves, options, execution);
     } catch (const Interrupted&) {
-      return ContractionResult{p, false, {}};
+      return ContractionResult{p, false, {}, false};
     }
   };
 }
@@ -186,6 +187,7 @@ void bind_repair(py::module_& module) {
       .def_readwrite("growth", &ContractionOptions::growth)
       .def_readwrite("max_steps", &ContractionOptions::max_steps)
       .def_readwrite("tolerance", &ContractionOptions::tolerance)
+      .def_readwrite("time_budget", &ContractionOptions::time_budget)
       .def_readwrite("storage", &ContractionOptions::storage);
   py::class_<RepairOptions>(module, "RepairOptions")
       .def(py::init<>())

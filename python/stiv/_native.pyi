@@ -372,6 +372,7 @@ class ContractionOptions:
     max_steps: int
     smoothing: float
     storage: Sequence[StorageFrame]
+    time_budget: float
     tolerance: float
 
     def __init__(self) -> None: ...

@@ -27,6 +27,7 @@ class ContractionOptions:
     growth: float = 2.0  #: factor of w from step to step, above 1
     max_steps: int = 16
     tolerance: float = 2.0  #: stops when the pairs exceed this multiple of their minimum, at least 1
+    time_budget: float = 0.0  #: seconds, then the best step so far is the result; 0: no limit, as within a repair
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ class ContractionResult:
     positions: NDArray[np.float64]  #: (m, 3) after the step with the fewest pairs; the start if no step reduced them
     free: bool  #: whether the surface there is free of intersections
     pairs: list[int]  #: number of intersecting pairs at the start and after each step
+    out_of_time: bool = False  #: the time budget ended the contraction
 
 
 def contraction_step(

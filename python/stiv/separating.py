@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv.arrays import Floats, as_floats, as_number
+from stiv.deadlines import deadline_after, is_over
 from stiv.intersections import IntersectionTest
 from stiv.surface import Surface
 from stiv.task import Steps, run
@@ -19,7 +20,12 @@ _WORTHWHILE = 1 - 2.0**-10  # of the best distance; a smaller gain is not sought
 
 
 def find_separation(
-    surface: Surface, vertices: ArrayLike, moving: ArrayLike, separation: float = 0.0, threads: int = 0
+    surface: Surface,
+    vertices: ArrayLike,
+    moving: ArrayLike,
+    separation: float = 0.0,
+    threads: int = 0,
+    time_budget: float = 0.0,
 ) -> Floats | None:
     """Return the least translation found, (3,), of the moving vertices after which no triangles intersect.
 
@@ -27,20 +33,26 @@ def find_separation(
     vertices    (N, 3) positions
     moving      (N,) true for the vertices of the bodies that move
     separation  how far beyond the first clear place, if there is room
+    time_budget in seconds, after which the least translation so far is the result; 0: no limit
 
     The distance is the least in the best of many directions, refined to a fraction of a percent. The result is exact in
     that nothing intersects there, and that no body lies inside another. Returns None if no direction is clear; a
     translation of 0 if nothing intersects.
     """
-    return run(find_separation_steps(surface, vertices, moving, separation, threads))
+    return run(find_separation_steps(surface, vertices, moving, separation, threads, time_budget))
 
 
 def find_separation_steps(
-    surface: Surface, vertices: ArrayLike, moving: ArrayLike, separation: float = 0.0, threads: int = 0
+    surface: Surface,
+    vertices: ArrayLike,
+    moving: ArrayLike,
+    separation: float = 0.0,
+    threads: int = 0,
+    time_budget: float = 0.0,
 ) -> Steps[Floats | None]:
     """Return the steps of :func:`find_separation`, which give a turn before each exact test."""
     q = as_floats(vertices, "vertices", (surface.vertex_count, 3))
-    search = _Search(surface, q, np.asarray(moving, bool), threads)
+    search = _Search(surface, q, np.asarray(moving, bool), threads, deadline_after(time_budget))
     if search.is_clear(np.zeros(3)):
         return np.zeros(3)
     found = yield from search.best_translation()
@@ -54,8 +66,8 @@ def find_separation_steps(
 class _Search:
     """Searches directions; `is_clear` decides."""
 
-    def __init__(self, surface: Surface, q: Floats, moving: NDArray[np.bool_], threads: int) -> None:
-        self._surface, self._q, self._moving = surface, q, moving
+    def __init__(self, surface: Surface, q: Floats, moving: NDArray[np.bool_], threads: int, end: float) -> None:
+        self._surface, self._q, self._moving, self._end = surface, q, moving, end
         self._test = IntersectionTest(surface, threads)
         bodies = np.unique(surface.vertex_body[surface.triangles[:, 0]], return_index=True)[1]
         self._seeds = surface.triangles[bodies, 0]  # a vertex of each body
@@ -70,10 +82,14 @@ class _Search:
         total = len(directions) + len(tilts)
         for number, direction in enumerate(directions):
             yield number / total
+            if is_over(self._end):
+                return best
             best = yield from self._improved(best, direction)
         chance = np.random.default_rng(0)
         for number, tilt in enumerate(tilts):
             yield (len(directions) + number) / total
+            if is_over(self._end):
+                return best
             if best is not None:
                 direction = best / np.linalg.norm(best) + tilt * chance.normal(size=3)
                 best = yield from self._improved(best, direction)
@@ -116,6 +132,8 @@ class _Search:
         intersecting = 0.0
         for _ in range(_BISECTIONS):
             yield None
+            if is_over(self._end):
+                break
             middle = (intersecting + clear) / 2
             if self.is_clear(middle * direction):
                 clear = middle

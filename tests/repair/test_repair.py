@@ -236,3 +236,27 @@ def test_welding_drops_collapsed_and_duplicate_faces() -> None:
     assert welded.surface.triangles.tolist() == [[0, 1, 2], [2, 3, 1]]
     assert welded.surface.loose_edges.tolist() == [[0, 3]]
     assert welded.vertex_map.tolist() == [0, 1, 2, 0, 1, 3]
+
+
+def test_a_time_budget_ends_a_contraction_with_the_steps_so_far(tube: Tangle) -> None:
+    begin, budget, calls = time.monotonic(), 2.0, 0
+
+    def wait_in_second_step(phase: str, fraction: float) -> None:
+        nonlocal calls
+        calls += 1
+        while calls > 1 and time.monotonic() < begin + budget + 0.1:
+            time.sleep(0.01)
+
+    whole = stiv.contract(tube.surface, tube.positions)
+    assert not whole.out_of_time and len(whole.pairs) > 2
+    options = stiv.ContractionOptions(time_budget=budget)
+    cut = stiv.contract(tube.surface, tube.positions, options, progress=wait_in_second_step)
+    one = stiv.contract(tube.surface, tube.positions, stiv.ContractionOptions(max_steps=1))
+    assert cut.out_of_time and not cut.free
+    assert cut.pairs == whole.pairs[:2]
+    assert np.array_equal(cut.positions, one.positions)
+    none = stiv.contract(tube.surface, tube.positions, stiv.ContractionOptions(time_budget=1e-9))
+    assert none.out_of_time and none.pairs == [] and np.array_equal(none.positions, tube.positions)
+    for wrong in (-1.0, np.nan, np.inf):
+        with pytest.raises(stiv.InputError, match="time_budget"):
+            stiv.contract(tube.surface, tube.positions, stiv.ContractionOptions(time_budget=wrong))

@@ -10,7 +10,6 @@ import bpy
 
 from ... import stiv_blender
 from ...intersection_texts import as_message
-from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..repair.reshape import ReshapeOperator
 from ..task_operator import TimeLimitProperty
@@ -57,20 +56,6 @@ class LayoutOperator(ReshapeOperator):
 
     def prepare(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
         """Store in properties what the redo panel cannot read again from the context."""
-
-    def settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
-        """The settings of the scene, with the time limit."""
-        return edit_settings(context.scene, time_budget=self.time_limit)
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """The redo panel: the properties that apply, then the time limit."""
-        self.layout.use_property_split, self.layout.use_property_decorate = True, False
-        for name in (*self.shown_properties(), "time_limit"):
-            self.layout.prop(self, name)
-
-    def shown_properties(self) -> tuple[str, ...]:
-        """Names of the properties that apply to the present values."""
-        return tuple(type(self).__annotations__)
 
     def _finish(self, context: bpy.types.Context, report: stiv_blender.LayoutReport) -> set[str]:
         context.window_manager.stiv_last_edit = json.dumps(asdict(report))

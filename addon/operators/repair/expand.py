@@ -33,3 +33,4 @@ class STIV_OT_expand(ReshapeOperator, bpy.types.Operator):
         """The redo panel, with a choice of objects."""
         self.layout.prop_search(self, "target", context.scene, "objects")
         self.layout.prop(self, "amount")
+        self.layout.prop(self, "time_limit")

@@ -7,8 +7,6 @@ import bpy
 from bpy.props import BoolProperty, FloatProperty
 
 from ... import stiv_blender
-from ...scene.edit_settings import edit_settings
-from ..task_operator import TimeLimitProperty
 from .reshape import ReshapeOperator
 
 
@@ -27,11 +25,6 @@ class STIV_OT_repair(ReshapeOperator, bpy.types.Operator):
         precision=3,
     )
     weld: BoolProperty(name="Weld", description="Merge coincident vertices first", default=False)
-    time_limit: TimeLimitProperty(description="Take the best result within this time; 0 for no limit")
-
-    def settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
-        """The settings of the scene, with the time limit."""
-        return edit_settings(context.scene, time_budget=self.time_limit)
 
     def begin(self, context: bpy.types.Context) -> stiv_blender.BlenderRepair:
         """Read the scene."""

@@ -16,14 +16,17 @@ from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..last_edit import numbers
 from ..reports import message_text, report_error
-from ..task_operator import TaskOperator
+from ..task_operator import TaskOperator, TimeLimitProperty
 
 REPORTED_PAIRS = 100  # pairs in the report for scripts
 MODES = {"OBJECT", "EDIT_MESH"}
+FAILURES = {"refused", "budget", "blocked"}  # if nothing changed
 
 
 class ReshapeOperator(TaskOperator, NeedsNativeModule):
     """Base of an operator; a subclass has its properties and `begin`."""
+
+    time_limit: TimeLimitProperty(description="Take the best result within this time; 0 for no limit")
 
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}  # noqa: RUF012 (Blender reads a set)
 
@@ -37,8 +40,18 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
         raise NotImplementedError
 
     def settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
-        """The settings of the scene."""
-        return edit_settings(context.scene)
+        """The settings of the scene, with the time limit."""
+        return edit_settings(context.scene, time_budget=self.time_limit)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The redo panel: the properties that apply, then the time limit."""
+        self.layout.use_property_split, self.layout.use_property_decorate = True, False
+        for name in (*self.shown_properties(), "time_limit"):
+            self.layout.prop(self, name)
+
+    def shown_properties(self) -> tuple[str, ...]:
+        """Names of the properties that apply to the present values."""
+        return tuple(type(self).__annotations__)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Solve at once, with Blender's progress at the pointer."""
@@ -89,10 +102,11 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
         lines = outcome(report)
         context.window_manager.stiv_check.summary = "\n".join(lines)
         display.show_pairs(context, report.pairs)
-        if report.status in ("refused", "budget") or (report.status == "blocked" and not report.changed):
+        if report.status in FAILURES and not report.changed:
             self.report({"ERROR"}, as_message(lines))
             return {"CANCELLED"}
-        self.report({"WARNING"} if report.pairs or report.message else {"INFO"}, as_message(lines))
+        is_whole = report.status != "budget" and not report.pairs and not report.message
+        self.report({"INFO"} if is_whole else {"WARNING"}, as_message(lines))
         return {"FINISHED"} if report.changed else {"CANCELLED"}
 
 
@@ -100,6 +114,7 @@ _OUTCOME_TEXTS = {
     "already_free": "nothing intersects",
     "refused": "not repaired, nothing changed",
     "budget": "time limit reached, nothing changed",
+    "kept": "time limit reached, result so far kept; run it again to continue",  # "budget" with a change
     "cancelled": "cancelled, nothing changed",
     "contracted": "contracted",
     "reached": "shape reached",
@@ -115,7 +130,8 @@ def outcome(report: stiv_blender.ReshapeReport) -> list[str]:
         faces = counted_faces(report.faces_before, translate)
         text = translate("Resolved {}, mean deviation {}").format(faces, f"{report.deviation:.2%}")
     else:
-        text = translate(_OUTCOME_TEXTS.get(report.status, report.status))
+        key = "kept" if report.status == "budget" and report.changed else report.status
+        text = translate(_OUTCOME_TEXTS.get(key, key))
     message = message_text(report.message) if report.status != "cancelled" else ""
     pairs = report.pairs
     first = (message, text) if report.status == "refused" else (text, message)

@@ -11,7 +11,7 @@ from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ...units import length_text
 from ..reports import report_error
-from ..task_operator import TaskOperator
+from ..task_operator import TaskOperator, TimeLimitProperty
 
 
 class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
@@ -20,6 +20,8 @@ class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
     bl_idname = "stiv.separate"
     bl_label = "Collision Separate"
     bl_options = {"REGISTER", "UNDO", "BLOCKING"}  # noqa: RUF012 (Blender reads a set)
+
+    time_limit: TimeLimitProperty(description="Take the best result within this time; 0 for no limit")
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
@@ -32,12 +34,12 @@ class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
         """Find the translation in steps, with progress in the header; at once without a window."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        return self.start_task(context, stiv_blender.separate_steps(context, edit_settings(context.scene)))
+        return self.start_task(context, stiv_blender.separate_steps(context, self._settings(context)))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Find the translation, write it, test the result, report the distance."""
         try:
-            found = stiv_blender.separate(context, edit_settings(context.scene))
+            found = stiv_blender.separate(context, self._settings(context))
         except Exception as error:  # nothing may stay half done, whatever went wrong
             return report_error(self, error)
         return self.finish_task(context, found)
@@ -50,4 +52,10 @@ class STIV_OT_separate(TaskOperator, NeedsNativeModule, bpy.types.Operator):
         distance = length_text(found.distance, context.scene.unit_settings)
         text = translate("{}: moved {} away from {}")
         self.report({"INFO"}, stiv_blender.fit_message(text, found.moved[0], distance, found.others[0]))
+        if found.out_of_time:
+            self.report({"WARNING"}, translate("time limit reached; raise it for a shorter way"))
         return {"FINISHED"}
+
+    def _settings(self, context: bpy.types.Context) -> stiv_blender.EditSettings:
+        """The settings of the scene, with the time limit."""
+        return edit_settings(context.scene, time_budget=self.time_limit)

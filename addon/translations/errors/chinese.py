@@ -3,6 +3,7 @@
 
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "1 个松散边或顶点与其接触，不受检测",
+    "allow more time, or select fewer objects": "请延长时间，或减少所选物体",
     "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 pair of faces cut each other{}": "1 对面相交{}",
@@ -114,7 +115,6 @@ MESSAGES = {
     "only the render intersects; set Guard to Viewport to leave it out": "只有渲染相交；将保护设为视口可将其排除",
     "precedes a subdivision; apply it": "位于细分之前；请应用它",
     'projects onto "{}"; edit that': "投影到“{}”；请编辑后者",
-    "raise the time limit, or repair fewer objects at once": "请延长时间限制，或减少同时修复的物体",
     "select the objects to pack, then the container as the active object": "请先选择要装入的物体，再将容器选为活动物体",
     "separation {}: the least that can be kept here is {}, because coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the origin": "最小距离 {}：此处可保持的最小值为 {}（坐标达 {}，以单精度存储）；请至少用此值，或用 0 表示自动",
     'shape key "{}" {}': "形态键“{}”{}",
@@ -140,6 +140,7 @@ MESSAGES = {
     "there is no such object": "没有这个物体",
     'there is no vertex group "{}" for {}; choose another': "没有用于{1}的顶点组“{0}”；请选择其他",
     "time limit reached; raise it to come closer": "已到时间限制；延长时间可更接近原形",
+    "time limit reached; raise it, or select fewer objects": "已到时间限制；请延长时间，或减少所选物体",
     "two moving lattices deform it; deselect one": "两个移动的晶格使其变形；请取消选择其一",
     'uses "{}" again; apply it': "再次使用“{}”；请应用它",
     "vertex {} has a coordinate that is not finite; delete it": "顶点 {} 有非有限坐标；请删除",

@@ -3,6 +3,7 @@
 
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "1 lose Kante oder Punkt berührt es und bleibt ungeprüft",
+    "allow more time, or select fewer objects": "mehr Zeit oder weniger Objekte wählen",
     "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 pair of faces cut each other{}": "1 Flächenpaar schneidet sich{}",
@@ -114,7 +115,6 @@ MESSAGES = {
     "only the render intersects; set Guard to Viewport to leave it out": "nur das Rendern schneidet sich; Schutz auf Ansicht stellen",
     "precedes a subdivision; apply it": "steht vor einer Unterteilung; anwenden",
     'projects onto "{}"; edit that': 'projiziert auf "{}"; dieses bearbeiten',
-    "raise the time limit, or repair fewer objects at once": "Zeitlimit erhöhen oder weniger Objekte zugleich reparieren",
     "select the objects to pack, then the container as the active object": "zuerst die Objekte auswählen, dann den Behälter als aktives Objekt",
     "separation {}: the least that can be kept here is {}, because coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the origin": "Mindestabstand {}: hier sind mindestens {} nötig, weil Koordinaten bis {} einfach genau gespeichert sind; diesen Wert oder 0 für automatisch wählen",
     'shape key "{}" {}': 'Formschlüssel "{}" {}',
@@ -140,6 +140,7 @@ MESSAGES = {
     "there is no such object": "dieses Objekt gibt es nicht",
     'there is no vertex group "{}" for {}; choose another': 'es gibt keine Vertexgruppe "{}" für {}; andere wählen',
     "time limit reached; raise it to come closer": "Zeitlimit erreicht; mit mehr Zeit wird es genauer",
+    "time limit reached; raise it, or select fewer objects": "Zeitlimit erreicht; mehr Zeit geben oder weniger Objekte auswählen",
     "two moving lattices deform it; deselect one": "zwei bewegte Gitter verformen es; eines abwählen",
     'uses "{}" again; apply it': 'verwendet "{}" noch einmal; anwenden',
     "vertex {} has a coordinate that is not finite; delete it": "Vertex {} hat eine nicht endliche Koordinate; löschen",

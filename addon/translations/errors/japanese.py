@@ -3,6 +3,7 @@
 
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "孤立した辺または頂点 1 個が接触していて、検査されません",
+    "allow more time, or select fewer objects": "時間を延ばすか、選択する対象を減らしてください",
     "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 pair of faces cut each other{}": "1 組の面が交差{}",
@@ -114,7 +115,6 @@ MESSAGES = {
     "only the render intersects; set Guard to Viewport to leave it out": "交差はレンダーだけです。保護を「ビューポート」にすると除外できます",
     "precedes a subdivision; apply it": "がサブディビジョンの前にあります。適用してください",
     'projects onto "{}"; edit that': "が「{}」に投影しています。そちらを編集してください",
-    "raise the time limit, or repair fewer objects at once": "制限時間を延ばすか、一度に修復する対象を減らしてください",
     "select the objects to pack, then the container as the active object": "詰めるオブジェクト、最後に容器をアクティブとして選択してください",
     "separation {}: the least that can be kept here is {}, because coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the origin": "最小距離 {}: ここで保てる最小値は {} です (単精度の座標が {} に達するため)。それ以上か、自動の 0 にしてください",
     'shape key "{}" {}': "シェイプキー「{}」{}",
@@ -140,6 +140,7 @@ MESSAGES = {
     "there is no such object": "そのオブジェクトはありません",
     'there is no vertex group "{}" for {}; choose another': "{1} の頂点グループ「{0}」がありません。別のものを選んでください",
     "time limit reached; raise it to come closer": "時間切れです。時間を延ばすと元の形に近づきます",
+    "time limit reached; raise it, or select fewer objects": "時間切れです。時間を延ばすか、選択する対象を減らしてください",
     "two moving lattices deform it; deselect one": "2 つの動くラティスが変形しています。一方の選択を解除してください",
     'uses "{}" again; apply it': "が「{}」を再び使っています。適用してください",
     "vertex {} has a coordinate that is not finite; delete it": "頂点 {} に有限でない座標があります。削除してください",

@@ -3,6 +3,7 @@
 
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "느슨한 에지 또는 버텍스 1개가 접촉하며 검사하지 않음",
+    "allow more time, or select fewer objects": "시간을 늘리거나 선택한 오브젝트를 줄이세요",
     "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 pair of faces cut each other{}": "면 한 쌍이 서로 교차함{}",
@@ -114,7 +115,6 @@ MESSAGES = {
     "only the render intersects; set Guard to Viewport to leave it out": "렌더만 교차함; 제외하려면 보호를 뷰포트로 설정하세요",
     "precedes a subdivision; apply it": "이(가) 섭디비전 앞에 있음; 적용하세요",
     'projects onto "{}"; edit that': '이(가) "{}"에 투영함; 그것을 편집하세요',
-    "raise the time limit, or repair fewer objects at once": "시간 제한을 늘리거나 한 번에 복구할 오브젝트를 줄이세요",
     "select the objects to pack, then the container as the active object": "담을 오브젝트를 선택한 다음 컨테이너를 활성 오브젝트로 선택하세요",
     "separation {}: the least that can be kept here is {}, because coordinates reach {} and are stored in single precision; use at least that, 0 for automatic, or move the scene nearer to the origin": "최소 거리 {}: 여기서 유지할 수 있는 최솟값은 {}임 (좌표가 {}에 이르고 단정밀도로 저장됨); 그 이상 또는 자동인 0을 사용하세요",
     'shape key "{}" {}': '셰이프 키 "{}" {}',
@@ -140,6 +140,7 @@ MESSAGES = {
     "there is no such object": "그런 오브젝트가 없음",
     'there is no vertex group "{}" for {}; choose another': '{1}에 쓸 버텍스 그룹 "{0}"이(가) 없음; 다른 것을 선택하세요',
     "time limit reached; raise it to come closer": "시간 제한에 도달; 시간을 늘리면 원래 형태에 더 가까워짐",
+    "time limit reached; raise it, or select fewer objects": "시간 제한에 도달; 시간을 늘리거나 선택한 오브젝트를 줄이세요",
     "two moving lattices deform it; deselect one": "움직이는 래티스 두 개가 변형함; 하나를 선택 해제하세요",
     'uses "{}" again; apply it': '"{}"을(를) 다시 사용함; 적용하세요',
     "vertex {} has a coordinate that is not finite; delete it": "버텍스 {}에 유한하지 않은 좌표가 있음; 삭제하세요",

@@ -83,6 +83,36 @@ void check(const ContractionOptions& options) {
   if (!(options.growth > 1) || !std::isfinite(options.growth)) throw InputError("growth must be above 1 and finite");
   if (!(options.tolerance >= 1)) throw InputError("tolerance must be at least 1");
   if (options.max_steps < 0) throw InputError("max_steps must not be negative");
+  if (!(options.time_budget >= 0) || !std::isfinite(options.time_budget))
+    throw InputError("time_budget must be finite and not negative");
+}
+
+/// Adds each step to the result, which is complete after every one.
+void contract_step_by_step(const CagedSurface& caged, const Controls& p, const std::vector<unsigned char>& moves,
+                           const ContractionOptions& options, Execution& execution, ContractionResult& result) {
+  const ContractionSystem system = contraction_system(*caged.cage, p, moves);
+  IntersectionTest test(caged.surface);
+  const auto pairs_at = [&](const Controls& controls) {
+    return test.find_all(caged.deformation->surface_in_range(controls), execution).count();
+  };
+  Controls now = as_stored(p, options.storage);
+  Index fewest = pairs_at(now);
+  result.positions = now;
+  result.pairs = {fewest};
+  double smoothing = options.smoothing;
+  for (int step = 0; step < options.max_steps && fewest > 0; ++step) {
+    execution.check();
+    execution.report("contraction", static_cast<double>(step) / options.max_steps);
+    now = as_stored(contraction_step(*caged.cage, system, now, smoothing), options.storage);
+    smoothing *= options.growth;
+    const Index pairs = pairs_at(now);
+    result.pairs.push_back(pairs);
+    if (pairs > options.tolerance * fewest) break;
+    if (pairs >= fewest) continue;
+    fewest = pairs;
+    result.positions = now;
+  }
+  result.free = fewest == 0;
 }
 
 }  // namespace
@@ -125,28 +155,14 @@ ContractionResult contract(const CagedSurface& caged, const Controls& p, const s
   check(options);
   check_caged(caged, p);
   const FloatingPointScope floating_point;
-  const ContractionSystem system = contraction_system(*caged.cage, p, moves);
-  IntersectionTest test(caged.surface);
-  const auto pairs_at = [&](const Controls& controls) {
-    return test.find_all(caged.deformation->surface_in_range(controls), execution).count();
-  };
-  Controls now = as_stored(p, options.storage);
-  ContractionResult result{now, false, {pairs_at(now)}};
-  Index fewest = result.pairs.front();
-  double smoothing = options.smoothing;
-  for (int step = 0; step < options.max_steps && fewest > 0; ++step) {
-    execution.check();
-    execution.report("contraction", static_cast<double>(step) / options.max_steps);
-    now = as_stored(contraction_step(*caged.cage, system, now, smoothing), options.storage);
-    smoothing *= options.growth;
-    const Index pairs = pairs_at(now);
-    result.pairs.push_back(pairs);
-    if (pairs > options.tolerance * fewest) break;
-    if (pairs >= fewest) continue;
-    fewest = pairs;
-    result.positions = now;
+  if (options.time_budget > 0) execution.set_time_budget(options.time_budget);
+  ContractionResult result{p, false, {}, false};
+  try {
+    contract_step_by_step(caged, p, moves, options, execution, result);
+  } catch (const Interrupted&) {
+    result.out_of_time = options.time_budget > 0 && !execution.cancel_requested();
+    if (!result.out_of_time) throw;
   }
-  result.free = fewest == 0;
   return result;
 }
 

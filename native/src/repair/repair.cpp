@@ -89,6 +89,7 @@ class Repair {
       options_.edit.storage.push_back({0, static_cast<Index>(p.rows()), Eigen::Matrix4d::Identity()});
     if (!options_.edit.single_precision) options_.edit.storage.clear();
     options_.contraction.storage = options_.edit.storage;
+    options_.contraction.time_budget = 0;
     options_.edit.weights = Eigen::Map<const Eigen::Array<unsigned char, Eigen::Dynamic, 1>>(
                                 movable_.controls.data(), static_cast<Index>(movable_.controls.size()))
                                 .cast<double>();

@@ -15,6 +15,7 @@ import bmesh  # noqa: E402
 
 from blend_fixtures.scenes.primitives import icosphere  # noqa: E402
 from blend_fixtures.scenes.tangled import hairpin  # noqa: E402
+from stiv import deadlines  # noqa: E402
 from stiv.blender import check_scene  # noqa: E402
 from stiv_addon.operators.repair.exclusions import excluded_count  # noqa: E402
 from stiv_addon.operators.repair.repair import STIV_OT_repair  # noqa: E402
@@ -92,6 +93,22 @@ def test_contract_expand_and_settle_use_their_properties() -> None:
     assert check_scene(bpy.context).pairs == ()
 
 
+def test_a_time_limit_keeps_what_is_done_or_changes_nothing(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(deadlines, "LEAST_TIME", 1e-9)
+    tube = add_tube()
+    assert bpy.ops.stiv.contract(steps=12, time_limit=1e-6) == {"FINISHED"}
+    assert (last()["status"], last()["changed"]) == ("budget", True)
+    assert "time limit reached, result so far kept; run it again to continue" in capfd.readouterr().out
+    before = positions(tube)
+    with pytest.raises(RuntimeError, match="nothing changed; allow more time, or select fewer objects"):
+        bpy.ops.stiv.contract(steps=12, until_free=True, time_limit=1e-6)
+    assert np.array_equal(positions(tube), before)
+    assert bpy.ops.stiv.contract(steps=12, until_free=True, time_limit=0) == {"FINISHED"}
+    assert last()["status"] == "contracted" and check_scene(bpy.context).pairs == ()
+
+
 def test_without_a_rest_shape_expand_reports_it() -> None:
     add("Ball", icosphere(1).vertices, icosphere(1).faces)
     with pytest.raises(RuntimeError, match="Ball: it has no rest shape"):
@@ -142,6 +159,7 @@ class InWindow(ReshapeOperator):
     bl_label = "Repair"
     max_deviation = 0.05
     weld = False
+    time_limit = 0.0
     begin = STIV_OT_repair.begin
 
     def __init__(self) -> None:

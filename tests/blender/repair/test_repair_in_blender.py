@@ -12,6 +12,7 @@ from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated
 import stiv
 from blend_fixtures.scenes.primitives import icosphere
 from blend_fixtures.scenes.tangled import hairpin
+from stiv import deadlines
 from stiv.blender import (
     ContractionSettings,
     EditSettings,
@@ -356,7 +357,7 @@ def test_a_time_limit_leaves_the_start_or_the_best_repair_and_says_so() -> None:
     before = snapshot()
     report = repair_scene(bpy.context, RepairSettings(EditSettings(time_budget=1e-9)))
     assert (report.status, report.changed) == ("budget", False)
-    assert report.message == "raise the time limit, or repair fewer objects at once"
+    assert report.message == "allow more time, or select fewer objects"
     assert snapshot() == before
     begin, rounds = time.monotonic(), 0
 
@@ -370,3 +371,52 @@ def test_a_time_limit_leaves_the_start_or_the_best_repair_and_says_so() -> None:
     report = repair_scene(bpy.context, settings, progress=wait_in_second_round)
     assert (report.status, report.message) == ("repaired", "time limit reached; raise it to come closer")
     assert pairs_shown() == 0
+
+
+def test_a_time_limit_keeps_the_steps_of_a_contraction() -> None:
+    tube = add_tube()
+    select(tube)
+    once = contract_scene(bpy.context)
+    after_one = evaluated(tube)
+    bpy.data.objects.remove(tube)
+    tube = add_tube()
+    select(tube)
+    report = contract_scene(bpy.context, ContractionSettings(EditSettings(time_budget=1e-9), steps=12))
+    assert (once.status, report.status, report.changed) == ("contracted", "budget", True)
+    assert np.array_equal(evaluated(tube), after_one)
+    assert len(report.pairs) == pairs_shown() and read_rest_shape(tube) is not None
+
+
+def test_a_time_limit_without_a_better_step_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deadlines, "LEAST_TIME", 1e-9)
+    select(add_tube())
+    before = snapshot()
+    settings = ContractionSettings(EditSettings(time_budget=1e-9), steps=12, until_free=True)
+    report = contract_scene(bpy.context, settings)
+    assert (report.status, report.changed) == ("budget", False)
+    assert report.message == "allow more time, or select fewer objects"
+    assert snapshot() == before
+
+
+@pytest.mark.parametrize("rounds", [1, 4])
+def test_a_time_limit_keeps_the_last_clear_state_of_an_expansion(rounds: int) -> None:
+    tube = add_tube()
+    select(tube)
+    rest = evaluated(tube)
+    contract_scene(bpy.context, ContractionSettings(steps=12, until_free=True))
+    start = relative_rms(rest, evaluated(tube))
+    begin, calls = time.monotonic(), 0
+
+    def wait_late(phase: str, fraction: float) -> None:
+        nonlocal calls
+        calls += 1
+        while calls > 12 and time.monotonic() < begin + 2.1:
+            time.sleep(0.01)
+
+    settings = ExpansionSettings(EditSettings(time_budget=2.0), rounds=rounds)
+    report = expand_scene(bpy.context, settings, progress=wait_late)
+    reached = relative_rms(rest, evaluated(tube))
+    assert (report.status, report.changed) == ("budget", True)
+    assert pairs_shown() == 0 and reached < start
+    assert expand_scene(bpy.context, ExpansionSettings(rounds=2)).status in ("corrected", "blocked")
+    assert pairs_shown() == 0 and relative_rms(rest, evaluated(tube)) < reached

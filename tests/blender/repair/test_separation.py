@@ -8,6 +8,7 @@ import pytest
 from building import add, add_cube, add_modifier, edit_mode, select, snapshot
 
 import stiv
+from stiv import deadlines
 from stiv.blender import EditSettings, separate
 
 
@@ -37,3 +38,15 @@ def test_locks_that_hold_an_object_are_named() -> None:
     select(cube)
     with pytest.raises(stiv.InputError, match=r"^Cube: still intersects Wall; clear its locks$"):
         separate(bpy.context, EditSettings())
+
+
+def test_a_time_limit_without_a_way_changes_nothing_and_names_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(deadlines, "LEAST_TIME", 1e-9)
+    cube = add_cube("Cube")
+    add_cube("Wall", (1.5, 0.2, 0.1))
+    select(cube)
+    before = snapshot()
+    with pytest.raises(stiv.InputError, match=r"^time limit reached; raise it, or select fewer objects$"):
+        separate(bpy.context, EditSettings(time_budget=1e-9))
+    assert snapshot() == before
+    assert not separate(bpy.context, EditSettings(time_budget=1000.0)).out_of_time

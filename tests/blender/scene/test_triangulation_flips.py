@@ -11,7 +11,8 @@ import pytest
 from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
-from stiv.blender import BlenderEdit, EditSettings, Task, check_scene, deadlines, read_surface
+from stiv import deadlines
+from stiv.blender import BlenderEdit, EditSettings, Task, check_scene, read_surface
 from stiv.blender.edit import state_writer
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble

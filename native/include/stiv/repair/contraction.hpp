@@ -50,6 +50,7 @@ struct ContractionOptions {
   double growth = 2;                  ///< factor of w from one step to the next, above 1
   int max_steps = 16;                 ///< at least 0
   double tolerance = 2;               ///< stops at this many times the fewest pairs so far; at least 1
+  double time_budget = 0;             ///< seconds; then the steps so far count. 0: no limit, as within a repair
   std::vector<StorageFrame> storage;  ///< positions are rounded as stored before they are tested
 };
 
@@ -57,6 +58,7 @@ struct ContractionResult {
   Controls positions;        ///< (m, 3) of the step with the fewest pairs; the start if no step has fewer
   bool free = false;         ///< true if nothing intersects there
   std::vector<Index> pairs;  ///< number of intersecting pairs at the start and after each step
+  bool out_of_time = false;  ///< the time budget ended the contraction
 };
 
 /// Contracts the cage step by step until nothing of the surface intersects, or until intersections grow: contraction

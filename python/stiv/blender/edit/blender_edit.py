@@ -19,7 +19,6 @@ from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
-from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.increments import Path, StillIncrements, split_motion
 from stiv.blender.edit.results import (
     intersecting_objects,
@@ -42,6 +41,7 @@ from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
+from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.task import Steps, run
 
 MOST_TORN = 4  # poses in which seams open, after each of which an edit begins again

@@ -8,7 +8,6 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.deadlines import is_over, time_left
 from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
 from stiv.blender.edit.sessions import (
     axes_of_all,
@@ -25,6 +24,7 @@ from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
 from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
+from stiv.deadlines import is_over, time_left
 from stiv.task import Call, Steps, Turns, run
 
 LAST_DRAG_TIME = 0.5  # seconds in which the last drag is solved again after the deadline

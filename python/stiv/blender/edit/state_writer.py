@@ -11,7 +11,6 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.deadlines import deadline_after, is_over
 from stiv.blender.edit.results import merge_results
 from stiv.blender.edit.sessions import stack_controls, write_controls
 from stiv.blender.edit.solver import EditSolver
@@ -21,6 +20,7 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.near_assembly import NearAssembly, near_assembly
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification, Verifier
+from stiv.deadlines import deadline_after, is_over
 from stiv.task import Call, Steps
 
 MAX_HALVINGS = 8  # of a step that fails the test in Blender's evaluation

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import stiv
-from stiv.blender.deadlines import is_over
 from stiv.blender.scene.arrays import Floats
+from stiv.deadlines import is_over
 from stiv.task import Steps, run
 
 

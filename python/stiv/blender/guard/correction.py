@@ -22,7 +22,6 @@ from stiv.blender.controls.participants import (
 )
 from stiv.blender.controls.placement_goals import RotationGoal, respond
 from stiv.blender.controls.points import PointGoal, point_weights
-from stiv.blender.deadlines import deadline_after, is_over, time_left
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
@@ -33,6 +32,7 @@ from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.task import Left, Steps, run
 
 STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface

@@ -11,7 +11,6 @@ import bpy
 import numpy as np
 
 from stiv import InputError, StartIntersectsError
-from stiv.blender.deadlines import is_over
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps, correction_deadline
@@ -39,6 +38,7 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.mesh_reading import read_edges
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 from stiv.blender.settings import EditSettings
+from stiv.deadlines import is_over
 from stiv.task import Left, Steps, run
 
 

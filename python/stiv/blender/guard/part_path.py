@@ -9,7 +9,6 @@ import bpy
 import numpy as np
 
 import stiv
-from stiv.blender.deadlines import is_over, time_left
 from stiv.blender.edit.sessions import body_separations, open_session
 from stiv.blender.guard.correction import correction_settings
 from stiv.blender.guard.new_parts import split_parts
@@ -18,6 +17,7 @@ from stiv.blender.scene.assembly import assemble
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import tested_names
+from stiv.deadlines import is_over, time_left
 from stiv.task import Call, Steps
 
 STEP = 0.1  # longest step toward the goal, of the part's size

@@ -14,7 +14,6 @@ from stiv.blender.controls.bone_channels import BoneChannels, StoredChannels
 from stiv.blender.controls.bone_set import check_rig
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.participants import find_clothes
-from stiv.blender.deadlines import is_over
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.guard.correction import ToolCorrection, correction_deadline, correction_settings, move_to_goal
 from stiv.blender.guard.scene_state import ObjectState, PoseState, SceneState
@@ -24,6 +23,7 @@ from stiv.blender.morphing.morph_edit import MorphEdit
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.deadlines import is_over
 from stiv.task import Left, Steps
 
 MORPHING_TIME = 0.25  # seconds of one call that moves sliders; it is repeated while there is time

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import stiv
-from stiv.blender.deadlines import deadline_after, is_over
+from stiv.deadlines import deadline_after, is_over
 from stiv.task import Steps
 from stiv.task import run as run_steps
 

@@ -14,12 +14,18 @@ import stiv
 from stiv import InputError
 from stiv.blender.controls.cage import CageWriter
 from stiv.blender.repair.repair import run_to_end
-from stiv.blender.repair.reshaping import ReshapeReport, ReshapeSnapshot, take_reshape_snapshot
+from stiv.blender.repair.reshaping import (
+    OUT_OF_TIME_REASONS,
+    ReshapeReport,
+    ReshapeSnapshot,
+    take_reshape_snapshot,
+)
 from stiv.blender.repair.rest_shape import read_rest_shape, store_rest_shape
 from stiv.blender.scene.arrays import Floats, Singles
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
+from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.edit_session import Progress
 from stiv.task import Call, Steps, run
 
@@ -29,7 +35,8 @@ class ContractionSettings:
     """Choices for a contraction.
 
     Attributes:
-        edit: roles, ignored pairs, threads.
+        edit: roles, ignored pairs, threads; its time_budget limits the whole contraction, which ends with the steps so
+            far.
         steps: number of steps, each twice as strong as the one before; the maximum with `until_free`.
         smoothing: strength of the first step.
         until_free: stop when clear, and use the step with the fewest intersections.
@@ -54,6 +61,7 @@ class BlenderContraction:
         self._rest_shapes = snapshot.world(stored)
         self._before = len(find_face_pairs(snapshot.assembly, snapshot.assembly.positions, settings.edit.threads))
         self._controls: Floats | None = None
+        self._end, self._out_of_time = deadline_after(settings.edit.time_budget), False
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: ContractionSettings | None = None) -> BlenderContraction:
@@ -71,7 +79,8 @@ class BlenderContraction:
         """Steps of `solve`."""
         if self._settings.until_free:
             found = yield from self._until_free()
-            self._controls = found.positions if found.pairs else None
+            self._out_of_time = found.out_of_time
+            self._controls = found.positions if found.pairs or found.out_of_time else None
             return
         self._controls = None
         now = self._snapshot.start
@@ -83,6 +92,9 @@ class BlenderContraction:
             )  # fmt: skip
             if now is None:
                 return
+            if is_over(self._end) and step + 1 < self._settings.steps:
+                self._out_of_time = True
+                break
         self._controls = now
 
     def write(self) -> ReshapeReport:
@@ -90,20 +102,25 @@ class BlenderContraction:
         controls, snapshot = self._controls, self._snapshot
         if controls is None:
             return ReshapeReport("cancelled", False, "cancelled", (), self._before)
+        changed = not np.array_equal(controls, snapshot.start)
+        if self._out_of_time and not changed:
+            return ReshapeReport("budget", False, OUT_OF_TIME_REASONS["budget"], (), self._before)
         snapshot.show(controls)
         shown = read_shown(bpy.context, snapshot.assembly)
         pairs = find_face_pairs(snapshot.assembly, shown, self._settings.edit.threads)
         for writer in compress(snapshot.writers, self._needs_rest_shape):
             store_rest_shape(writer.reference.find(), writer.original)
-        changed = not np.array_equal(controls, snapshot.start)
-        return ReshapeReport("contracted", changed, "", pairs, self._before, snapshot.deviation(controls))
+        status = "budget" if self._out_of_time else "contracted"
+        return ReshapeReport(status, changed, "", pairs, self._before, snapshot.deviation(controls))
 
     def restore(self) -> None:
         """Restore everything exactly."""
         self._snapshot.restore()
 
     def _until_free(self) -> Steps[stiv.ContractionResult]:
-        options = stiv.ContractionOptions(smoothing=self._settings.smoothing, max_steps=self._settings.steps)
+        options = stiv.ContractionOptions(
+            smoothing=self._settings.smoothing, max_steps=self._settings.steps, time_budget=time_left(self._end)
+        )
         with self._snapshot.naming_topology_changes():
             found: stiv.ContractionResult = yield Call(
                 stiv.contract, stiv.start_contract, self._snapshot.assembly.surface, self._snapshot.start, options,

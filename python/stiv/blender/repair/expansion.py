@@ -17,6 +17,7 @@ from stiv.blender.edit.trail import AcceptedState, find_latest
 from stiv.blender.repair.repair import run_to_end
 from stiv.blender.repair.reshaping import (
     MAX_FLIP_RETRIES,
+    OUT_OF_TIME_REASONS,
     ReshapeReport,
     ReshapeSnapshot,
     take_reshape_snapshot,
@@ -26,6 +27,7 @@ from stiv.blender.scene.arrays import Floats, Singles
 from stiv.blender.scene.mesh_reading import read_cage
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification
+from stiv.deadlines import deadline_after, time_left
 from stiv.task import Call, Steps, run
 
 
@@ -34,7 +36,8 @@ class ExpansionSettings:
     """Choices for an expansion.
 
     Attributes:
-        edit: separation, roles, ignored pairs, smoothness, threads, time budget.
+        edit: separation, roles, ignored pairs, smoothness, threads; its time_budget limits the whole expansion, which
+            ends with the last accepted state.
         target: name of a mesh object with the same vertices, whose local shape is the goal; it does not participate. ""
             uses the rest shapes that contraction and repair store. Meshes without one keep their shape as goal, and
             yield to the others.
@@ -58,6 +61,7 @@ class BlenderExpansion:
         self._settings = settings
         self._results: list[stiv.EditResult] = []
         self._attempts = 0
+        self._end = deadline_after(settings.edit.time_budget)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: ExpansionSettings | None = None) -> BlenderExpansion:
@@ -84,13 +88,13 @@ class BlenderExpansion:
         for _ in range(self._settings.rounds):
             result: stiv.EditResult = yield Call(
                 stiv.expand, stiv.start_expand, self._snapshot.assembly.surface, now, self._goal,
-                self._snapshot.edit_options(), deformation=self._snapshot.deformation,
+                self._edit_options(), deformation=self._snapshot.deformation,
             )  # fmt: skip
             if result.status == "cancelled":
                 self._results = [result]
                 return
             if result.energy >= least:
-                self._results = self._results or [replace(result, status="unchanged", path=[])]
+                self._end_without_gain(result)
                 return
             self._results.append(result)
             now, least = result.controls, result.energy
@@ -107,7 +111,7 @@ class BlenderExpansion:
             return ReshapeReport("cancelled", False, "cancelled")
         path = [controls for result in self._results for controls in result.path]
         if not path:
-            return self._written(self._snapshot.start, last.status, "")
+            return self._written(self._snapshot.start, last.status, OUT_OF_TIME_REASONS.get(last.status, ""))
         verification = self._snapshot.verify(path[-1])
         if verification.passed:
             return self._written(path[-1], last.status, "")
@@ -126,6 +130,18 @@ class BlenderExpansion:
     def restore(self) -> None:
         """Restore everything exactly."""
         self._snapshot.restore()
+
+    def _edit_options(self) -> stiv.EditOptions:
+        """The options of a solve, with the time that is left."""
+        return replace(self._snapshot.edit_options(), time_budget=time_left(self._end))
+
+    def _end_without_gain(self, result: stiv.EditResult) -> None:
+        """Leave out a result that is no closer to the goal; but tell whether the time limit ended it."""
+        status = "budget" if result.status == "budget" else "unchanged"
+        if not self._results:
+            self._results = [replace(result, status=status, path=[])]
+        elif status == "budget":
+            self._results[-1] = replace(self._results[-1], status=status)
 
     def _energy(self, controls: Floats) -> float:
         """Half the sum of squared distances to the goal's surface, as in stiv.EditResult."""

@@ -9,9 +9,9 @@ from typing import Any
 import bpy
 
 import stiv
-from stiv.blender.deadlines import deadline_after, time_left
 from stiv.blender.repair.reshaping import (
     MAX_FLIP_RETRIES,
+    OUT_OF_TIME_REASONS,
     ReshapeReport,
     ReshapeSnapshot,
     take_reshape_snapshot,
@@ -22,12 +22,8 @@ from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.elements import FacePair, count_faces
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
+from stiv.deadlines import deadline_after, time_left
 from stiv.task import Call, Steps, run
-
-OUT_OF_TIME_REASONS = {  # by status
-    "repaired": "time limit reached; raise it to come closer",
-    "budget": "raise the time limit, or repair fewer objects at once",
-}
 
 
 @dataclass(frozen=True)

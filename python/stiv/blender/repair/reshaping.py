@@ -48,6 +48,10 @@ from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import Verification, Verifier
 
 MAX_FLIP_RETRIES = 4  # times that the work is repeated because Blender flipped triangles of bent faces
+OUT_OF_TIME_REASONS = {  # by status
+    "repaired": "time limit reached; raise it to come closer",
+    "budget": "allow more time, or select fewer objects",
+}
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,8 @@ class ReshapeReport:
     """The result of a contraction, an expansion or a repair.
 
     Attributes:
-        status: of stiv.RepairResult or stiv.EditResult, or "contracted".
+        status: of stiv.RepairResult or stiv.EditResult, or "contracted". "budget": the time limit ended the solve; what
+            it had reached is written if `changed`.
         changed: Blender shows a new state; if False, nothing changed.
         message: for the user; may be "".
         pairs: intersections that Blender shows now.

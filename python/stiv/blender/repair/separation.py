@@ -18,17 +18,22 @@ from stiv.blender.scene.elements import FacePair
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
+from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.separating import find_separation_steps
 from stiv.task import Steps, run
 
 
 @dataclass(frozen=True)
 class SeparationReport:
-    """The objects that were moved, those that they intersected, and the translation, (3,); 0 if nothing intersected."""
+    """The objects that were moved, those that they intersected, and the translation, (3,); 0 if nothing intersected.
+
+    `out_of_time`: the time limit ended the search, and a shorter translation may exist.
+    """
 
     moved: tuple[str, ...]
     others: tuple[str, ...]
     translation: Floats
+    out_of_time: bool = False
 
     @property
     def distance(self) -> float:
@@ -39,14 +44,15 @@ class SeparationReport:
 def separate(context: bpy.types.Context, settings: EditSettings) -> SeparationReport:
     """Translate the selected objects by the least distance found that parts them from all other visible objects.
 
-    Pairs of `ignored_pairs` may intersect. Raises InputError, with nothing changed, if nothing can be moved, or no
-    direction parts them.
+    Pairs of `ignored_pairs` may intersect. `time_budget` of the settings limits the search. Raises InputError, with
+    nothing changed, if nothing can be moved, no direction parts them, or none was found in time.
     """
     return run(separate_steps(context, settings))
 
 
 def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[SeparationReport]:
     """Steps of `separate`; the last one writes."""
+    end = deadline_after(settings.time_budget)
     free = replace(settings, interference=False, object_response="rigid", responders="selected")
     participants = find_participants(context, free)
     for each in participants:
@@ -62,12 +68,15 @@ def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[
     is_moving[surfaces.vertices_of(_indices(surfaces, moving))] = True
     gap = settings.separation or 1e-4 * float(np.ptp(surfaces.positions[is_moving], axis=0).max())
     translation = yield from find_separation_steps(
-        surfaces.surface, surfaces.positions, is_moving, gap, settings.threads
+        surfaces.surface, surfaces.positions, is_moving, gap, settings.threads, time_left(end)
     )
+    if translation is None and is_over(end):
+        raise InputError("time limit reached; raise it, or select fewer objects")
     if translation is None:
         raise InputError(f"{others[0]}: no direction parts it from the selection; repair it, or let it pass")
+    out_of_time = is_over(end)
     _write(context, edit, surfaces, translation, settings)
-    return SeparationReport(tuple(sorted(moving)), others, translation)
+    return SeparationReport(tuple(sorted(moving)), others, translation, out_of_time)
 
 
 def _write(
