@@ -44,6 +44,31 @@ Scene coincident_sheets() {
   return scene;
 }
 
+void append_upright_sheet(Positions& q, Triangles& triangles, Index cells, const Vector3& centre) {
+  const Index first = static_cast<Index>(q.rows());
+  append_sheet(q, triangles, cells, 1, Vector3::Zero());
+  for (Index row = first; row < q.rows(); ++row)
+    q.row(row) = Eigen::RowVector3d(q(row, 2), q(row, 1), q(row, 0)) + centre.transpose();
+}
+
+/// Two upright sheets through a level one near its ends, with the fewest vertices first. The middle of the first is
+/// close to the level sheet, so it must become tiny; but not once the level sheet is half as long.
+struct SheetsThroughSheet {
+  static constexpr Index first = 25, level = 81;
+  Scene scene;
+
+  SheetsThroughSheet() {
+    Triangles triangles(0, 3);
+    append_upright_sheet(scene.controls, triangles, 4, Vector3(0.8, 0.02, 0.06));
+    append_sheet(scene.controls, triangles, 8, 2, Vector3(0, 0.013, 0));
+    append_upright_sheet(scene.controls, triangles, 10, Vector3(-0.8, 0.03, 0.01));
+    scene.controls = scene.controls.cast<float>().cast<double>().eval();
+    const Index count = static_cast<Index>(scene.controls.rows());
+    scene.surface = surface_of(triangles, first, count - first, Mobility::deformable, Mobility::deformable);
+    scene.deformation = make_identity(count);
+  }
+};
+
 }  // namespace
 
 TEST_CASE("a repaired surface passes the exact test and is close to the input") {
@@ -177,6 +202,34 @@ TEST_CASE("components that smoothing cannot separate are shrunk") {
   }
   CHECK(most == doctest::Approx(least));
   CHECK(most <= doctest::Approx(0.5));
+}
+
+TEST_CASE("components grow again once others have made room") {
+  const Scene scene = SheetsThroughSheet().scene;
+  Execution execution(1);
+  const CagedSurface caged = without_cage(scene.surface);
+  const auto supports = supports_of(*caged.deformation);
+  const Movable movable{Marks(supports.size(), 1), Marks(supports.size(), 1), supports};
+  const Contracted apart = shrink_components(caged, movable, {}, scene.controls, execution);
+  CHECK(apart.pairs == 0);
+  CHECK(pairs_at(scene, apart.positions).empty());
+  const auto size_ratio = [&](Index begin, Index count) {
+    const auto size = [&](const Positions& q) {
+      const auto rows = q.middleRows(begin, count);
+      return (rows.colwise().maxCoeff() - rows.colwise().minCoeff()).norm();
+    };
+    return size(apart.positions) / size(scene.controls);
+  };
+  const Index first = SheetsThroughSheet::first, level = SheetsThroughSheet::level;
+  CHECK(size_ratio(first, level) == doctest::Approx(0.5));
+  CHECK(size_ratio(0, first) == doctest::Approx(0.5));
+  CHECK(size_ratio(first + level, 121) == doctest::Approx(1));
+  Execution two_threads(2);
+  CHECK(shrink_components(caged, movable, {}, scene.controls, two_threads).positions == apart.positions);
+  // The first sheet cannot have this size beside the whole level one.
+  Positions beside = scene.controls;
+  beside.topRows(first) = apart.positions.topRows(first);
+  CHECK_FALSE(pairs_at(scene, beside).empty());
 }
 
 TEST_CASE("expansion toward any target stays free of intersections") {
