@@ -10,6 +10,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.edit.sessions import open_session
+from stiv.blender.layout.element_boxes import ElementBoxes, overlap
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.task import Call, Steps
 
@@ -20,6 +21,8 @@ SHORTEST_STRIDE = 1e-3  # of the whole way, for bodies without a size
 DRIFT = 1e-4  # of a distance below the separation, that a search after the first may lose to rounding
 TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
 
+Elements = list[Indices]
+"""Chosen triangles, loose edges and loose vertices of a surface, ascending."""
 
 HERE = np.zeros((2, 3))
 
@@ -106,7 +109,11 @@ class RigidScene:
         for number, mover in enumerate(self.movers):
             self._mover_of_vertex[mover.rows] = number
         self._elements = [surface.triangles, surface.loose_edges, _loose_vertices(surface)]
-        self._boxes = [_boxes(self._positions, each) for each in self._elements]
+        owners = [self._mover_of_vertex[each[:, 0]] for each in self._elements]
+        self._own = [[_rows_where(owner == number) for owner in owners] for number in range(len(self.movers))]
+        self._boxes = [
+            ElementBoxes(self._positions, each, owner >= 0) for each, owner in zip(self._elements, owners, strict=True)
+        ]
         self._element_bodies = [surface.vertex_body[each[:, 0]] for each in self._elements]
         self._mover_of_body = np.full(len(surface.bodies), -1, np.int32)
         self._mover_of_body[surface.vertex_body] = self._mover_of_vertex
@@ -134,9 +141,8 @@ class RigidScene:
         except stiv.InfeasibleError as error:
             raise stiv.InputError(f"{chosen.name}: its topology changes as it moves; apply its modifiers") from error
         self._poses[mover] = pose.copy()
-        for elements, boxes in zip(self._elements, self._boxes, strict=True):
-            own = np.flatnonzero(self._mover_of_vertex[elements[:, 0]] == mover)
-            boxes[:, own] = _boxes(self._positions, elements[own])
+        for own_elements, boxes in zip(self._own[mover], self._boxes, strict=True):
+            boxes.update(self._positions, own_elements)
         for body in self._bodies[mover]:
             own = rows[self._surface.vertex_body[rows] == body]
             self._body_boxes[:, body] = _box(self._positions[own])
@@ -241,7 +247,11 @@ class RigidScene:
 
     def extent(self) -> Floats:
         """Lowest and highest corner of everything, (2, 3)."""
-        return _box(self._positions)
+        return self._extent_of(np.ones(len(self._surface.bodies), np.bool_))
+
+    def _extent_of(self, bodies: Flags) -> Floats:
+        low, high = self._body_boxes[:, bodies]
+        return np.stack([low.min(axis=0), high.max(axis=0)])
 
     @property
     def largest_separation(self) -> float:
@@ -250,9 +260,8 @@ class RigidScene:
 
     def extent_among(self, mover: int, among: Flags | None) -> Floats:
         """Lowest and highest corner of the obstacles of a mover, (2, 3); of itself without any. among: see `facing`."""
-        near = self._near(mover, None, among)
-        rows = self._used(near)
-        return _box(self._positions[rows]) if len(rows) else self.box(mover)
+        bodies = self._bodies_near(mover, None, among)
+        return self._extent_of(bodies) if bodies.any() else self.box(mover)
 
     def bodies_around(self, mover: int, among: Flags | None = None) -> Iterator[tuple[int, Indices]]:
         """Each obstacle whose box touches that of a mover, with its triangles, (f, 3). among: see `facing`."""
@@ -364,7 +373,7 @@ class RigidScene:
 
         A response aims for twice the separation of its session, which is therefore half the minimum distance.
         """
-        elements = [own | near for own, near in zip(self._of(mover), self._near(mover, box, None), strict=True)]
+        elements = _united(self._own[mover], self._near(mover, box, None))
         rows = self._rows(mover, elements)
         bodies = [
             stiv.Body(body.name, "rigid" if number in self._bodies[mover] else "fixed")
@@ -395,50 +404,48 @@ class RigidScene:
         reach = margin * self.largest_separation
         swept = None if offsets is None else np.stack([offsets.min(axis=0) - reach, offsets.max(axis=0) + reach])
         near = self._near(mover, None if swept is None else self.box(mover) + swept, among)
-        if not any(each.any() for each in near):
+        if not any(map(len, near)):
             return
-        mine = self._of(mover) if swept is None else self._own_near(mover, near, swept)
+        mine = self._own[mover] if swept is None else self._own_near(mover, near, swept)
         for body in self._bodies[mover]:
-            own = [flags & (bodies == body) for flags, bodies in zip(mine, self._element_bodies, strict=True)]
+            own = [rows[bodies[rows] == body] for rows, bodies in zip(mine, self._element_bodies, strict=True)]
             distances = np.array([self._separation_of(body, other) for other in range(len(self._surface.bodies))])
             for h in np.unique(distances[distances > 0]):
                 others = [
-                    flags & (distances[bodies] == h) for flags, bodies in zip(near, self._element_bodies, strict=True)
+                    rows[distances[bodies[rows]] == h] for rows, bodies in zip(near, self._element_bodies, strict=True)
                 ]
-                if any(each.any() for each in others) and any(each.any() for each in own):
+                if any(map(len, others)) and any(map(len, own)):
                     yield self._face(own, others, float(h))
 
-    def _own_near(self, mover: int, near: list[Flags], swept: Floats) -> list[Flags]:
-        """Flags of the elements of a mover that may approach other ones between offsets, (2, 3)."""
-        lows = [low[flags] for flags, (low, _) in zip(near, self._boxes, strict=True)]
-        highs = [high[flags] for flags, (_, high) in zip(near, self._boxes, strict=True)]
+    def _own_near(self, mover: int, near: Elements, swept: Floats) -> Elements:
+        """The elements of a mover that may approach other ones between offsets, (2, 3)."""
+        lows = [boxes.low[rows] for rows, boxes in zip(near, self._boxes, strict=True)]
+        highs = [boxes.high[rows] for rows, boxes in zip(near, self._boxes, strict=True)]
         lowest, highest = np.concatenate(lows).min(axis=0), np.concatenate(highs).max(axis=0)
-        return [
-            own & _overlap(low, high, np.stack([lowest - swept[1], highest - swept[0]]))
-            for own, (low, high) in zip(self._of(mover), self._boxes, strict=True)
-        ]
+        around = np.stack([lowest - swept[1], highest - swept[0]])
+        return [boxes.among(own, around) for own, boxes in zip(self._own[mover], self._boxes, strict=True)]
 
-    def _face(self, own: list[Flags], others: list[Flags], separation: float) -> Facing:
-        elements = [first | second for first, second in zip(own, others, strict=True)]
+    def _face(self, own: Elements, others: Elements, separation: float) -> Facing:
         first, second = self._used(own), self._used(others)
         rows = np.concatenate([first, second])
         body = np.repeat(np.array([0, 1], np.int32), [len(first), len(second)])
         bodies = [stiv.Body("mover", "rigid"), stiv.Body("obstacles", "fixed")]
-        return Facing(self._part(elements, rows, body, bodies, ()), rows, len(first), separation)
+        return Facing(self._part(_united(own, others), rows, body, bodies, ()), rows, len(first), separation)
 
-    def _used(self, elements: list[Flags]) -> Indices:
+    def _used(self, elements: Elements) -> Indices:
         """The vertices of chosen triangles, loose edges and loose vertices."""
-        chosen = [all_[flags].ravel() for all_, flags in zip(self._elements, elements, strict=True)]
-        return np.unique(np.concatenate(chosen))
+        return np.unique(
+            np.concatenate([all_[rows].ravel() for all_, rows in zip(self._elements, elements, strict=True)])
+        )
 
-    def _rows(self, mover: int, elements: list[Flags]) -> Indices:
+    def _rows(self, mover: int, elements: Elements) -> Indices:
         """All vertices of a mover, then those of other chosen elements."""
         own = self.movers[mover].rows
         return np.concatenate([own, np.setdiff1d(self._used(elements), own)])
 
     def _part(
         self,
-        elements: list[Flags],
+        elements: Elements,
         rows: Indices,
         body: Indices,
         bodies: Sequence[stiv.Body],
@@ -449,19 +456,15 @@ class RigidScene:
         triangles, edges = (number[self._elements[k][elements[k]]] for k in (0, 1))
         return stiv.Surface(triangles, len(rows), edges, body, bodies, ignored)
 
-    def _of(self, mover: int) -> list[Flags]:
-        return [self._mover_of_vertex[elements[:, 0]] == mover for elements in self._elements]
-
-    def _near(self, mover: int, box: Floats | None, among: Flags | None) -> list[Flags]:
-        """Flags of the elements of other bodies near a box, (2, 3); None: everywhere."""
-        bodies = self._bodies_near(mover, box, among)
-        found = []
-        for body, (low, high) in zip(self._element_bodies, self._boxes, strict=True):
-            flags = bodies[body]
-            if box is not None:
-                rows = np.flatnonzero(flags)
-                flags[rows] = _overlap(low[rows], high[rows], box)
-            found.append(flags)
+    def _near(self, mover: int, box: Floats | None, among: Flags | None) -> Elements:
+        """The elements of other bodies near a box, (2, 3); None: everywhere."""
+        bodies, found = self._bodies_near(mover, box, among), []
+        for body, boxes in zip(self._element_bodies, self._boxes, strict=True):
+            if box is None or not bodies.any():
+                found.append(_rows_where(bodies[body]) if box is None else np.empty(0, np.int32))
+                continue
+            rows = boxes.touching(box)
+            found.append(rows[bodies[body[rows]]])
         return found
 
     def _bodies_near(self, mover: int, box: Floats | None, among: Flags | None) -> Flags:
@@ -470,7 +473,7 @@ class RigidScene:
         tested[mover] = False
         bodies: Flags = tested[self._mover_of_body]
         if box is not None:
-            bodies &= _overlap(self._body_boxes[0], self._body_boxes[1], box)
+            bodies &= overlap(self._body_boxes[0], self._body_boxes[1], box)
         return bodies
 
     def _separation_of(self, body: int, other: int) -> float:
@@ -487,18 +490,13 @@ def _loose_vertices(surface: stiv.Surface) -> Indices:
     return np.flatnonzero(~used).astype(np.int32)[:, None]
 
 
-def _boxes(positions: Floats, elements: Indices) -> Floats:
-    """Lowest and highest corner of each element, (2, k, 3)."""
-    corners = positions[elements]
-    return np.stack([corners.min(axis=1), corners.max(axis=1)]) if len(elements) else np.zeros((2, 0, 3))
+def _rows_where(flags: Flags) -> Indices:
+    return np.flatnonzero(flags).astype(np.int32)
 
 
-def _overlap(low: Floats, high: Floats, box: Floats) -> Flags:
-    """Flags of boxes, (k, 3) each corner, that touch a box, (2, 3); by columns, which is faster than by rows."""
-    found: Flags = np.ones(len(low), np.bool_)
-    for axis in range(3):
-        found &= (low[:, axis] <= box[1, axis]) & (high[:, axis] >= box[0, axis])
-    return found
+def _united(first: Elements, second: Elements) -> Elements:
+    """All elements of two choices that have none in common."""
+    return [np.sort(np.concatenate(pair)) for pair in zip(first, second, strict=True)]
 
 
 def _box(points: Floats) -> Floats:
