@@ -20,6 +20,7 @@ Point = tuple[int, int, int, int]
 Vector = tuple[int, int, int]
 NEAR = 1e-5  # in sizes of a pair: a vertex further from an edge is not on it
 DEEP = 1e-3  # barycentric coordinates above this are inside a triangle despite rounding
+SLIVER = 1e-10  # squared areas below this, in sizes of a pair, are too small for barycentric coordinates
 INSIDE = np.array([(4, 1, 1), (1, 4, 1), (1, 1, 4), (1, 3, 2), (2, 1, 3), (3, 2, 1)]) / 6
 
 MOST_RESULTS = 64  # one byte for each pair
@@ -48,6 +49,7 @@ def _find(corners: Floats) -> NDArray[np.bool_]:
     """Return which pairs, (k, 2, 3, 3), only share points of an edge of each."""
     found = _vertex_near_edge(corners)
     found[found] = ~_overlap_clearly(corners[found])
+    found[found] = ~_edge_passes_through(corners[found])
     for row in np.flatnonzero(found):
         points = _exact_points(corners[row].reshape(6, 3))
         found[row] = _touch_in_edges(points[:3], points[3:])
@@ -57,7 +59,7 @@ def _find(corners: Floats) -> NDArray[np.bool_]:
 def _vertex_near_edge(corners: Floats) -> NDArray[np.bool_]:
     """Return which pairs have a vertex of one near an edge of the other, (k,) bool."""
     near = np.zeros(len(corners), np.bool_)
-    size = np.ptp(corners.reshape(len(corners), 6, 3), axis=1).max(axis=1, initial=0.0)
+    size = _sizes(corners)
     for one, other in ((0, 1), (1, 0)):
         for corner in range(3):
             for edge in range(3):
@@ -83,6 +85,38 @@ def _overlap_clearly(corners: Floats) -> NDArray[np.bool_]:
             height = np.abs((offset * normal).sum(axis=1)) / area**0.75
             overlap |= (np.minimum(second, third) > DEEP) & (second + third < 1 - DEEP) & (height < NEAR)
     return overlap
+
+
+def _edge_passes_through(corners: Floats) -> NDArray[np.bool_]:
+    """Return which pairs have an edge of one that clearly passes through the inside of the other, (k,) bool.
+
+    Most pairs that share a vertex and intersect do.
+    """
+    passes, size = np.zeros(len(corners), np.bool_), _sizes(corners)
+    for one, other in ((0, 1), (1, 0)):
+        a, u, v = (corners[:, other, 0], *(corners[:, other, k] - corners[:, other, 0] for k in (1, 2)))
+        normal = np.cross(u, v)
+        area = (normal**2).sum(axis=1)
+        is_wide = area > SLIVER * size**4
+        area = np.where(is_wide, area, 1.0)
+        offsets = corners[:, one] - a[:, None]
+        heights = (offsets * normal[:, None]).sum(axis=2) / np.sqrt(area)[:, None]
+        for k in range(3):
+            below, above = heights[:, k], heights[:, k - 1]
+            far = np.minimum(np.abs(below), np.abs(above)) > NEAR * size
+            crosses = is_wide & far & ((below > 0) != (above > 0))
+            fraction = below / np.where(crosses, below - above, 1.0)
+            point = offsets[:, k] + fraction[:, None] * (offsets[:, k - 1] - offsets[:, k])
+            second = (np.cross(point, v) * normal).sum(axis=1) / area
+            third = (np.cross(u, point) * normal).sum(axis=1) / area
+            passes |= crosses & (np.minimum(second, third) > DEEP) & (second + third < 1 - DEEP)
+    return passes
+
+
+def _sizes(corners: Floats) -> Floats:
+    """The largest extent of each pair along an axis, (k,)."""
+    sizes: Floats = np.ptp(corners.reshape(len(corners), 6, 3), axis=1).max(axis=1, initial=0.0)
+    return sizes
 
 
 def _touch_in_edges(first: Sequence[Point], second: Sequence[Point]) -> bool:

@@ -6,6 +6,7 @@ import pytest
 from oracles import rational
 
 import stiv
+from stiv import edge_contacts as contacts
 from stiv.edge_contacts import MOST_RESULTS, edge_contacts
 from stiv.seams import Seams, common_seams, find_seams, seam_pairs
 
@@ -134,6 +135,23 @@ def test_contacts_of_copies_are_those_of_each_place() -> None:
             found = edge_contacts(q, np.arange(6).reshape(2, 3), pairs)
             assert found.tolist() == [number > 0 or other[2][1] < 0]
             found[:] = random.integers(2)
+
+
+@pytest.mark.parametrize(("largest", "noise"), [(2, 0.0), (4, 0.0), (4, 1e-9), (9, 1e-3)])
+def test_filters_of_contacts_along_edges_agree_with_exact_arithmetic(
+    largest: int, noise: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    random = np.random.default_rng(largest)
+    q = random.integers(0, largest + 1, (150, 3)) + noise * random.normal(size=(150, 3))
+    triangles = random.integers(0, len(q), (300, 3)).astype(np.int32)
+    triangles = triangles[(np.sort(triangles, axis=1)[:, 1:] != np.sort(triangles, axis=1)[:, :-1]).all(axis=1)]
+    pairs = stiv.find_intersections(q, triangles)[:4000]
+    corners = q[triangles[pairs]]
+    filtered = contacts._find(corners)
+    for name in ("_overlap_clearly", "_edge_passes_through"):
+        monkeypatch.setattr(contacts, name, lambda corners: np.zeros(len(corners), bool))
+    assert filtered.tolist() == contacts._find(corners).tolist()
+    assert len(pairs) > 1000 and not filtered.all()
 
 
 def test_seams_are_divided_where_values_differ() -> None:
