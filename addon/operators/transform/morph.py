@@ -15,6 +15,7 @@ from ...properties import StivKeyValue
 from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..reports import message_text, report_error, say
+from ..task_operator import TimeLimitProperty
 
 
 class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
@@ -26,6 +27,9 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
 
     keys: CollectionProperty(name="Shape Keys", type=StivKeyValue)
     others_yield: BoolProperty(name="Others Yield", description="Let the other shape keys of the object respond")
+    time_limit: TimeLimitProperty(
+        description="Take the best result within this time; 0 for no limit", options={"HIDDEN", "SKIP_SAVE"}
+    )
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
@@ -52,26 +56,38 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Move the keys whose value differs from the given one, and report; or take the result of a drag."""
         ob = context.active_object
-        found = _take_dragged()
+        found, late = _take_dragged(), ""
         if found is None:
             present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
             values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
             if not values:
                 self.report({"INFO"}, translate("No value changes"))
                 return {"CANCELLED"}
-            settings = edit_settings(context.scene)
+            settings = edit_settings(context.scene, time_budget=self.time_limit)
             try:
                 found = stiv_blender.morph(context, {ob.name: values}, settings, others_yield=self.others_yield)
             except Exception as error:  # nothing may stay half done, whatever went wrong
                 return report_error(self, error)
+            late = _late_text(found, {(ob.name, key): value for key, value in present.items()})
         values = {key: value for (_, key), value in found.values.items()}
         described = {"status": found.status, "blocking": found.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
         for note in filter(None, (*found.start_notes, found.torn_seam_note)):
             self.report({"WARNING"}, message_text(note))
-        if text := result_text(found.status, found.blocking, translate, stiv_blender.fit_message):
+        if late:
+            self.report({"WARNING"}, late)
+        elif text := result_text(found.status, found.blocking, translate, stiv_blender.fit_message):
             say(self, "INFO", text)
         return {"FINISHED"}
+
+
+def _late_text(found: stiv_blender.MorphReport, before: dict[tuple[str, str], float]) -> str:
+    """What the time limit left, if it ended the morph; empty otherwise. before: values by object and key."""
+    if found.status != "budget":
+        return ""
+    if any(before.get(slider, value) != value for slider, value in found.values.items()):
+        return translate("time limit reached, result so far kept; run it again to continue")
+    return translate("time limit reached, nothing changed")
 
 
 def register_drag(result: stiv_blender.MorphReport, **properties: object) -> None:

@@ -4,6 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from itertools import count
+from types import SimpleNamespace
 from typing import Any
 
 import bpy
@@ -13,6 +16,7 @@ from building import add, add_cube, add_grid, evaluated, mesh
 
 import stiv
 from stiv.blender import EditSettings, Handles, MorphEdit, check_scene, morph
+from stiv.blender.morphing import morph_edit
 
 SETTINGS = EditSettings(separation=0.01)
 
@@ -65,6 +69,20 @@ def test_a_slider_stops_at_contact_and_goes_back() -> None:
     check_stopped(ball)
     assert morph(bpy.context, {"Ball": {"Wide": 0.25}}, SETTINGS).status == "reached"
     assert wide.value == 0.25
+
+
+def test_a_time_limit_ends_on_the_way_with_a_clear_state(monkeypatch: pytest.MonkeyPatch) -> None:
+    ball = ball_and_wall()
+    wide = add_key(ball, "Wide", scaled(3))
+    clock = count(0, 100)  # each look at the clock of the increments takes long
+    monkeypatch.setattr(morph_edit, "time", SimpleNamespace(monotonic=clock.__next__))
+    report = morph(bpy.context, {"Ball": {"Wide": 1.0}}, replace(SETTINGS, time_budget=50.0))
+    assert (report.status, report.values) == ("budget", {("Ball", "Wide"): wide.value})
+    assert 0 < wide.value < 0.4 and check_scene(bpy.context).pairs == ()
+    monkeypatch.undo()
+    again = morph(bpy.context, {"Ball": {"Wide": 1.0}}, replace(SETTINGS, time_budget=1000.0))
+    assert again.status in ("corrected", "blocked")
+    check_stopped(ball)
 
 
 def test_several_keys_at_once_never_pass_their_goals() -> None:

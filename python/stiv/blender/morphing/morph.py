@@ -49,7 +49,8 @@ def morph(
     Keyframes are inserted if Auto Keying is on.
 
     values        goals by names of object and key, such as {"Body": {"Wide": 1.0}}
-    settings      as of an edit in Object Mode; object_response and slide_out_of_axis have no effect
+    settings      as of an edit in Object Mode; object_response and slide_out_of_axis have no effect. time_budget limits
+                  the way to the goals, which then ends early with the status "budget"
     others_yield  the other sliders of these objects respond too, so that the given ones come closer to their goals
 
     Raises InputError naming object and key, StartIntersectsError if objects intersect at the start; nothing changed.
@@ -59,7 +60,7 @@ def morph(
     lower, upper = limits_toward(sliders, wanted, is_given)
     edit = MorphEdit(context, settings, sliders, is_given, lower, upper, others_yield)
     try:
-        report = _solve(edit, wanted)
+        report = _solve(edit, wanted, settings.time_budget)
     except BaseException:
         edit.restore()
         raise
@@ -74,13 +75,15 @@ def limits_toward(sliders: Sequence[KeySlider], goals: Floats, given: Flags) -> 
     return np.where(given, np.minimum(start, nearest), least), np.where(given, np.maximum(start, nearest), most)
 
 
-def _solve(edit: MorphEdit, goals: Floats) -> MorphReport:
+def _solve(edit: MorphEdit, goals: Floats, time_budget: float) -> MorphReport:
     """Move the sliders toward their goals, and leave the scene at the closest values that Blender shows free."""
-    result, _ = edit.advance(goals)
-    settled = edit.settle()
+    result, arrived = edit.advance(goals, time_budget or np.inf)
+    settled = edit.settle() if arrived else result
     edit.show()
     status = settled.status if settled.status != "unchanged" else result.status
-    if np.array_equal(edit.values, edit.start) and status != "unchanged":
+    if not arrived:
+        status = "budget"
+    elif np.array_equal(edit.values, edit.start) and status != "unchanged":
         status = "blocked"
     values = dict(zip([(each.owner.name, each.key) for each in edit.sliders], edit.values.tolist(), strict=True))
     blocking = result.blocking or settled.blocking
