@@ -82,7 +82,7 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
 
 
 def _late_text(found: stiv_blender.MorphReport, before: dict[tuple[str, str], float]) -> str:
-    """What the time limit left, if it ended the morph; empty otherwise. before: values by object and key."""
+    """The text on a morph that the time limit ended; empty for others. before: values by object and key."""
     if found.status != "budget":
         return ""
     if any(before.get(slider, value) != value for slider, value in found.values.items()):

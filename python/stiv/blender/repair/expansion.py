@@ -136,7 +136,7 @@ class BlenderExpansion:
         return replace(self._snapshot.edit_options(), time_budget=time_left(self._end))
 
     def _end_without_gain(self, result: stiv.EditResult) -> None:
-        """Leave out a result that is no closer to the goal; but tell whether the time limit ended it."""
+        """Leave out a result that does not come closer to the goal, except for the end of the time limit."""
         status = "budget" if result.status == "budget" else "unchanged"
         if not self._results:
             self._results = [replace(result, status=status, path=[])]
