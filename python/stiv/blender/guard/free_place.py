@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.deadlines import deadline_after, is_over
 from stiv.blender.guard.new_parts import split_parts
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import tested_names
+from stiv.deadlines import deadline_after, is_over
 from stiv.task import Steps
 
 DIRECTIONS = sorted(
