@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from .operators import CLASSES
+from .operators.classes import CLASSES
 
 PAGE = Path(__file__).with_name("guide") / "user_guide.html"
 

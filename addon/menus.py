@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import bpy
 
-from .operators import LAYOUT_ICONS, RESHAPING, TRANSFORMS
 from .operators.check.check import STIV_OT_check
 from .operators.check.measure import STIV_OT_measure
+from .operators.classes import LAYOUT_ICONS, RESHAPING, TRANSFORMS
 from .operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections
 from .operators.repair.guard_revert import STIV_OT_guard_revert
 from .operators.repair.repair import STIV_OT_repair

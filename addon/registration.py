@@ -11,21 +11,20 @@ from . import (
     loop_updates,
     manual,
     menus,
-    operators,
     panels,
     preferences,
     properties,
     translations,
 )
 from .guard import waiting, watcher
-from .operators import running
+from .operators import classes, running
 from .overlay import display
 from .tools import gizmo_group, live_switch, toolbar
 
 CLASSES = (
     *properties.CLASSES,
     *display.CLASSES,
-    *operators.CLASSES,
+    *classes.CLASSES,
     *waiting.CLASSES,
     *getting_started.CLASSES,
     *panels.CLASSES,

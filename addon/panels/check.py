@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators import RESHAPING
 from ..operators.check.check import STIV_OT_check
 from ..operators.check.measure import STIV_OT_measure
+from ..operators.classes import RESHAPING
 from ..operators.repair.exclusions import STIV_OT_clear_exclusions, STIV_OT_exclude_intersections, excluded_count
 from ..operators.repair.passing import STIV_OT_let_pass, STIV_OT_let_pass_remove
 from ..operators.repair.separate import STIV_OT_separate

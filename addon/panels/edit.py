@@ -7,7 +7,7 @@ import bpy
 
 from .. import native_module, stiv_blender
 from ..automatic import draw_automatic
-from ..operators import TRANSFORMS
+from ..operators.classes import TRANSFORMS
 from ..scene.edit_settings import edit_settings
 from ..translations import translate
 from .base import SidebarPanel, draw_lines, draw_problem

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..operators import LAYOUT_ICONS
+from ..operators.classes import LAYOUT_ICONS
 from .base import SubPanel
 
 

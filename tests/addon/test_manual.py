@@ -9,7 +9,7 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from stiv_addon import manual  # noqa: E402
-from stiv_addon.operators import CLASSES  # noqa: E402
+from stiv_addon.operators.classes import CLASSES  # noqa: E402
 
 GUIDE = Path(__file__).resolve().parents[2] / "docs/user_guide.md"
 

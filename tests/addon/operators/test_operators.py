@@ -21,7 +21,7 @@ from stiv.blender.scene.message_fitting import fit_message  # noqa: E402
 from stiv.task import Steps, run  # noqa: E402
 from stiv_addon import native_module  # noqa: E402
 from stiv_addon.menus import MENUS  # noqa: E402
-from stiv_addon.operators import CLASSES  # noqa: E402
+from stiv_addon.operators.classes import CLASSES  # noqa: E402
 from stiv_addon.operators.reports import last_messages, outcome_text  # noqa: E402
 from stiv_addon.operators.transform import drag_results  # noqa: E402
 from stiv_addon.panels.base import draw_problem  # noqa: E402
