@@ -117,8 +117,16 @@ def _is_explained(error: Exception) -> bool:
 
 
 def report_raised(operator: bpy.types.Operator, error: RuntimeError) -> set[str]:
-    """Report the error of a nested operator, which Blender raises as a RuntimeError."""
-    _report_with_details(operator, str(error).removeprefix("Error: ").strip())
+    """Report the error of a nested operator, which Blender raises as a RuntimeError.
+
+    An operator of STIV has already remembered its own error.
+    """
+    raised = str(error).strip()
+    remembered = last_messages[-1].partition(": ERROR: ")[2] if last_messages else ""
+    if remembered and raised.partition(": ")[2] == remembered.strip():  # after "Error", in the user's language
+        operator.report({"ERROR"}, remembered)
+    else:
+        _report_with_details(operator, raised.removeprefix("Error: "))
     return {"CANCELLED"}
 
 

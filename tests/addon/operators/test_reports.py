@@ -82,3 +82,22 @@ def test_an_outcome_without_exceptions_is_information(reported: Any) -> None:
     reports.report_outcome(operator, "deflected", "")
     reports.report_outcome(operator, "", "")
     assert messages == [("INFO", "deflected")]
+
+
+@pytest.mark.parametrize("prefix", ["Error", "Fehler"])
+def test_the_error_of_a_nested_operator_is_remembered_once(reported: Any, prefix: str) -> None:
+    operator, messages = reported
+    reports.last_messages.clear()
+    reports.say(operator, "ERROR", "Cube: no surface")
+    reports.report_raised(operator, RuntimeError(f"{prefix}: Cube: no surface\n"))
+    assert messages == [("ERROR", "Cube: no surface")] * 2  # Blender shows that of the outer operator
+    assert list(reports.last_messages) == ["SimpleNamespace: ERROR: Cube: no surface"]
+
+
+def test_the_error_of_a_nested_operator_of_blender_is_remembered(reported: Any) -> None:
+    operator, messages = reported
+    reports.last_messages.clear()
+    reports.say(operator, "INFO", "deflected")
+    reports.report_raised(operator, RuntimeError("Error: no view\n"))
+    assert messages[1:] == [("ERROR", "no view")]
+    assert list(reports.last_messages)[1:] == ["SimpleNamespace: ERROR: no view"]
