@@ -2,5 +2,5 @@
 """The overlay of the 3D view: contacts, intersecting faces, clearance, speed.
 
 content: plain arrays to draw; drawing: lines, triangles and text; display: when to draw them;
-guides: axes and the circle of a drag.
+guides: axes, circle and line to the pointer of a drag.
 """

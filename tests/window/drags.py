@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import bpy
+import extension
 import scenes
 from playing import FURTHEST, INTO_WALL, NEAR, box_x, click, expect_free, expect_near, prepared, start
 from simulation import Steps, Window
@@ -121,6 +122,27 @@ def rotate_at_wall(window: Window) -> Steps:
     expect_free(window)
 
 
+def line_to_pointer(window: Window) -> Steps:
+    """A rotation and a scaling show a line from the pivot to the pointer; a move does not."""
+    guides = extension.module("overlay.guides")
+    for key in ("R", "E"):
+        yield from prepared(window, scenes.add_box, "Box")
+        yield from window.rest_at((0.8, 0.2, 0.0))
+        yield from start(window, key)
+        yield from window.glide(window.pixel((0.5, 1.0, 0.0)))
+        (x, y), end = guides.shown().pointer_line
+        pivot = window.pixel((0.0, 0.0, 0.0))
+        expect_near(x + window.region.x, pivot[0], 1.0, "x of the pivot")
+        expect_near(y + window.region.y, pivot[1], 1.0, "y of the pivot")
+        assert (end[0] + window.region.x, end[1] + window.region.y) == window.mouse, (end, window.mouse)
+        window.picture(f"line_to_pointer_{key}")
+        window.key("G")
+        yield from window.settle()
+        assert guides.shown() is None, guides.shown()
+        yield from click(window, "ESC")
+        assert guides.shown() is None, guides.shown()
+
+
 def scale_at_wall(window: Window) -> Steps:
     """A box scaled up until it would go through the wall."""
     yield from prepared(window, scenes.add_box, "Box")
@@ -166,6 +188,7 @@ _ALL = (
     typed_into_wall,
     axis_lock,
     rotate_at_wall,
+    line_to_pointer,
     scale_at_wall,
 )
 DRAGS = {scenario.__name__: scenario for scenario in _ALL}

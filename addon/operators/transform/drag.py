@@ -182,7 +182,7 @@ class DragOperator(Mixin):
         drag, writer = self._drag, self._drag.writer
         self._show_waiting(context)
         chosen = drag.progress is Progress.RUNNING or drag.progress is Progress.STARTING
-        guides.show(guides.guides_of(drag.state, self._frame) if chosen else None)
+        guides.show(guides.guides_of(drag.state, self._frame) if chosen else None, context.region)
         if drag.progress is not Progress.RUNNING or drag.edit is None or drag.shows_soon:
             return
         label = translate(OPERATORS[drag.state.kind].bl_label)
