@@ -17,6 +17,8 @@ from ...translations import translate
 from ..reports import message_text, report_error, say
 from ..task_operator import TimeLimitProperty
 
+DIALOG_TIME_LIMIT = 10.0  # seconds: Blender stands still until a morph of the dialog ends
+
 
 class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
     """Move shape key values until surfaces touch"""
@@ -43,15 +45,17 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         for block in stiv_blender.movable_keys(context.active_object):
             row = self.keys.add()
             row.name, row.value = block.name, block.value
+        self.time_limit = DIALOG_TIME_LIMIT
         result: set[str] = context.window_manager.invoke_props_dialog(self)
         return result
 
     def draw(self, context: bpy.types.Context) -> None:
-        """A slider for each key, and the option."""
+        """A slider for each key, and the options."""
         self.layout.use_property_split, self.layout.use_property_decorate = True, False
         for row in self.keys:
             self.layout.prop(row, "value", text=row.name, translate=False)
         self.layout.prop(self, "others_yield")
+        self.layout.prop(self, "time_limit")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Move the keys whose value differs from the given one, and report; or take the result of a drag."""

@@ -2,6 +2,7 @@
 """`stiv.morph` as a script calls it: values, undo, the description of the last edit, and what it refuses."""
 
 import json
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -48,6 +49,25 @@ def test_a_morph_stops_reports_and_is_one_undo_step(ball: Any) -> None:
     assert said["status"] in ("corrected", "blocked") and said["values"] == {"Wide": value(ball, "Wide")}
     bpy.ops.ed.undo()
     assert value(bpy.data.objects["Sphere"], "Wide") == 0
+
+
+class Rows(list[SimpleNamespace]):
+    """A collection property of an operator without a window."""
+
+    def add(self) -> SimpleNamespace:
+        self.append(SimpleNamespace())
+        return self[-1]
+
+
+def test_the_dialog_begins_with_the_values_and_a_short_time_limit(ball: Any) -> None:
+    from stiv_addon.operators.transform import morph as module
+
+    ball.data.shape_keys.key_blocks["Thin"].value = 0.25
+    operator = SimpleNamespace(keys=Rows(), time_limit=120.0)
+    manager = SimpleNamespace(invoke_props_dialog=lambda shown: {"RUNNING_MODAL"})
+    module.STIV_OT_morph.invoke(operator, SimpleNamespace(active_object=ball, window_manager=manager), None)
+    assert [(row.name, row.value) for row in operator.keys] == [("Wide", 0.0), ("Thin", 0.25)]
+    assert operator.time_limit == module.DIALOG_TIME_LIMIT
 
 
 def test_the_other_keys_yield(ball: Any) -> None:
