@@ -24,8 +24,7 @@ IndexPairs checked(const IndexPairs& pairs, Index triangle_count) {
                        std::to_string(triangle_count) + " triangles");
     ordered.emplace_back(std::min(a, b), std::max(a, b));
   }
-  std::sort(ordered.begin(), ordered.end());
-  ordered.erase(std::unique(ordered.begin(), ordered.end()), ordered.end());
+  sort_unique(ordered);
   return ordered;
 }
 
@@ -95,8 +94,7 @@ void ExcludedPairs::add_touching(const PositionsView& start) {
         if (box.squaredExteriorDistance(placed.box(second)) < reach) near.push_back(std::minmax(first, second));
     }
   }
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  sort_unique(near);
   std::erase_if(near, [&](const auto& pair) {
     const auto& [a, b] = pair;
     return is_among(pairs_, a, b) || share_corner(placed.corners(a), placed.corners(b)) || !placed.touch(a, b, least_);
@@ -129,8 +127,7 @@ IndexPairs ExcludedPairs::bodies_of_pairs() const {
   const auto body = [&](Index triangle) { return surface_->body_of(surface_->triangles()(triangle, 0)); };
   IndexPairs bodies;
   for (const auto& [a, b] : pairs_) bodies.push_back(std::minmax(body(a), body(b)));
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  sort_unique(bodies);
   return bodies;
 }
 

@@ -204,8 +204,7 @@ class IntersectionTest::Implementation {
       std::erase_if(listed, [&](const CornerPair& pair) { return !(loose_distance(pair, q) < distance); });
       const IndexPairs near = numbered(listed, loose);
       found.insert(found.end(), near.begin(), near.end());
-      std::sort(found.begin(), found.end());
-      found.erase(std::unique(found.begin(), found.end()), found.end());
+      sort_unique(found);
       return found;
     };
     return {{}, find(loose_edges_), numbered(find(loose_vertices_))};
@@ -269,13 +268,13 @@ class IntersectionTest::Implementation {
     IndexPairs found = numbered(pairs, triangles_);
     for (auto& [first, second] : found)
       if (second < first) std::swap(first, second);
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
+    sort_unique(found);
     return found;
   }
 
   /// Numbers of the primitives in pairs with triangles.
   IndexPairs numbered(const std::vector<CornerPair>& pairs, const Primitives& first) const {
+    if (pairs.empty()) return {};
     const PrimitiveNumbers of_first(first.all_corners()), of_second(triangles_.all_corners());
     IndexPairs found;
     for (const auto& pair : pairs) found.emplace_back(of_first.of(pair.first), of_second.of(pair.second));

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
+#include "stiv/acceptance/intersections.hpp"
 #include "stiv/types.hpp"
 
 namespace stiv {
@@ -17,6 +19,12 @@ inline bool share_corner(const std::array<Index, 3>& a, const std::array<Index, 
   bool shared = false;
   for (const Index corner : a) shared |= (corner == b[0]) | (corner == b[1]) | (corner == b[2]);
   return shared;
+}
+
+/// Sorts pairs of indices, and keeps each once.
+inline void sort_unique(IndexPairs& pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
 /// Pairs of primitives that may intersect where each coordinate differs by at most `reach` from those of a surface
