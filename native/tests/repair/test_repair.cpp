@@ -69,6 +69,15 @@ struct SheetsThroughSheet {
   }
 };
 
+/// The components of a scene without a cage, all of them movable.
+Contracted shrunk_components(const Scene& scene, int threads = 1) {
+  Execution execution(threads);
+  const CagedSurface caged = without_cage(scene.surface);
+  const auto supports = supports_of(*caged.deformation);
+  const Movable movable{Marks(supports.size(), 1), Marks(supports.size(), 1), supports};
+  return shrink_components(caged, movable, {}, scene.controls, execution);
+}
+
 }  // namespace
 
 TEST_CASE("a repaired surface passes the exact test and is close to the input") {
@@ -183,11 +192,7 @@ TEST_CASE("a cage is contracted until its surface is free, and expanded back") {
 
 TEST_CASE("components that smoothing cannot separate are shrunk") {
   const Scene scene = spike_through_sheet();  // two components
-  Execution execution(1);
-  const CagedSurface caged = without_cage(scene.surface);
-  const auto supports = supports_of(*caged.deformation);
-  const Movable movable{Marks(supports.size(), 1), Marks(supports.size(), 1), supports};
-  const Contracted apart = shrink_components(caged, movable, {}, scene.controls, execution);
+  const Contracted apart = shrunk_components(scene);
   CHECK(apart.pairs == 0);
   CHECK(pairs_at(scene, apart.positions).empty());
   // The moved component is scaled: all edges are shorter by the same factor.
@@ -206,11 +211,7 @@ TEST_CASE("components that smoothing cannot separate are shrunk") {
 
 TEST_CASE("components grow again once others have made room") {
   const Scene scene = SheetsThroughSheet().scene;
-  Execution execution(1);
-  const CagedSurface caged = without_cage(scene.surface);
-  const auto supports = supports_of(*caged.deformation);
-  const Movable movable{Marks(supports.size(), 1), Marks(supports.size(), 1), supports};
-  const Contracted apart = shrink_components(caged, movable, {}, scene.controls, execution);
+  const Contracted apart = shrunk_components(scene);
   CHECK(apart.pairs == 0);
   CHECK(pairs_at(scene, apart.positions).empty());
   const auto size_ratio = [&](Index begin, Index count) {
@@ -224,8 +225,7 @@ TEST_CASE("components grow again once others have made room") {
   CHECK(size_ratio(first, level) == doctest::Approx(0.5));
   CHECK(size_ratio(0, first) == doctest::Approx(0.5));
   CHECK(size_ratio(first + level, 121) == doctest::Approx(1));
-  Execution two_threads(2);
-  CHECK(shrink_components(caged, movable, {}, scene.controls, two_threads).positions == apart.positions);
+  CHECK(shrunk_components(scene, 2).positions == apart.positions);
   // The first sheet cannot have this size beside the whole level one.
   Positions beside = scene.controls;
   beside.topRows(first) = apart.positions.topRows(first);
