@@ -97,7 +97,7 @@ class StackBlock:
 
         Raises InputError if the topology changes with small moves, or the surface does not follow the vertices.
         """
-        run(self._read_steps(settings, frame, positions, held))
+        run(self._read_steps(settings, frame, positions, held, Turns()))
 
     @classmethod
     def read_steps(
@@ -109,14 +109,8 @@ class StackBlock:
         return block
 
     def _read_steps(
-        self,
-        settings: BlockSettings,
-        frame: Floats,
-        positions: Floats,
-        held: HeldVertices,
-        turns: Turns | None = None,
+        self, settings: BlockSettings, frame: Floats, positions: Floats, held: HeldVertices, turns: Turns
     ) -> Steps[None]:
-        turns = turns or Turns()
         self._settings, self._frame, self._held, self._rest = settings, frame, held, positions
         ob, twin = settings.reference.find(), settings.open_twin()
         self._shown_frame = as_matrix(ob.matrix_world)

@@ -102,8 +102,8 @@ def guard_result_steps(
     changes = compare(accepted.state, present)
     try:
         return (yield from _guard(context, settings, accepted, present, changes, end))
-    except (GeneratorExit, Left) as end:
-        if changes.unsupported or not isinstance(end, Left):
+    except (GeneratorExit, Left) as ending:
+        if changes.unsupported or not isinstance(ending, Left):
             with suppress(InputError, SceneChangedError):
                 revert(context, present)
         raise

@@ -64,7 +64,7 @@ class MorphEdit:
             ends = [np.where(given, each, self.start) for each in (lower, upper)]
             self._jacobian = scene.simplify(ends, scene.jacobian())
             self._deformation = self._make_deformation(lower, upper)
-            loose = scene.leave_out_cutting_parts()
+            loose = scene.leave_out_touching_parts()
             self._session, excluded = _open_session(scene, self._deformation, _weights(scene, given, others_yield))
         except BaseException:
             scene.write(scene.start)

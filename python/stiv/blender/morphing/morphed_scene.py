@@ -160,8 +160,8 @@ class MorphedScene:
         self._vertices = self._merge(seams)
         return np.asarray(jacobian[self.rows])
 
-    def leave_out_cutting_parts(self) -> tuple[str, ...]:
-        """Leave out the loose edges and vertices that cut their own object; returns notes on them."""
+    def leave_out_touching_parts(self) -> tuple[str, ...]:
+        """Leave out the loose edges and vertices that touch their own object; returns notes on them."""
         loose = find_touching_parts(self.assembly, (), self.settings.threads)
         notes = loose_part_notes(self.assembly, loose)
         self.assembly = without_loose_parts(self.assembly, loose)

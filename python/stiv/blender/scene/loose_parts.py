@@ -15,6 +15,8 @@ from stiv.blender.scene.exclusions import needs_no_decision
 from stiv.blender.scene.face_pairs import has_loose_elements
 from stiv.blender.scene.message_fitting import fit_message
 
+_ROUNDING = 64  # units in the last place that positions may differ from stored ones
+
 
 @dataclass(frozen=True)
 class LooseParts:
@@ -27,9 +29,6 @@ class LooseParts:
 
     edges: Indices
     vertices: Indices
-
-
-_ROUNDING = 64  # units in the last place that positions may differ from stored ones
 
 
 def find_touching_parts(assembly: Assembly, together: Collection[str], threads: int = 0) -> LooseParts:
