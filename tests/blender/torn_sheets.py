@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 import numpy as np
-from building import add, evaluated, mesh
+from building import add, add_modifier, edit_mode, evaluated, mesh, select
 
 import stiv
 
@@ -20,6 +20,22 @@ RIGHT = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 def torn_sheet() -> Any:
     """Two quads with copies of the vertices that they share."""
     return add("Sheet", mesh("Sheet", [*LEFT, *RIGHT], [(0, 1, 2, 3), (4, 5, 6, 7)]))
+
+
+def rig_halves(sheet: Any) -> Any:
+    """A rig, in Object Mode, with a bone for each half of the sheet, "A" and "B"."""
+    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
+    bpy.context.collection.objects.link(rig)
+    edit_mode(rig)
+    for name, x in (("A", -0.5), ("B", 0.5)):
+        bone = rig.data.edit_bones.new(name)
+        bone.head, bone.tail = (x, 0.5, 0), (x, 1.5, 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for name, vertices in (("A", range(4)), ("B", range(4, 8))):
+        sheet.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
+    add_modifier(sheet, "ARMATURE", object=rig)
+    select(rig)
+    return rig
 
 
 def add_key(ob: Any, name: str, moved: dict[int, Sequence[float]]) -> Any:

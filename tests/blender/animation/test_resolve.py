@@ -7,8 +7,8 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, mesh, select
-from torn_sheets import CROSSING, PARTING, add_key, cutting_faces, torn_sheet
+from building import add, add_cube, add_grid, add_modifier, mesh
+from torn_sheets import CROSSING, PARTING, add_key, cutting_faces, rig_halves, torn_sheet
 
 from stiv.blender.scripts.blend_files import open_blend, save_blend
 from stiv.blender.verify.frame_check import check_frames, set_frame
@@ -183,17 +183,7 @@ def test_a_seam_that_opens_during_the_animation_is_named_with_the_way_out(
 def test_keyframes_that_cross_a_torn_seam_are_corrected_until_nothing_cuts(tmp_path: Path) -> None:
     """Bones that move the copies apart: faces there are tested against each other, unlike in an edit."""
     sheet = torn_sheet()
-    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
-    bpy.context.collection.objects.link(rig)
-    select(rig)
-    edit_mode(rig)
-    for name, x in (("A", -0.5), ("B", 0.5)):
-        bone = rig.data.edit_bones.new(name)
-        bone.head, bone.tail = (x, 0.5, 0), (x, 1.5, 0)
-    bpy.ops.object.mode_set(mode="OBJECT")
-    for name, vertices in (("A", range(4)), ("B", range(4, 8))):
-        sheet.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
-    add_modifier(sheet, "ARMATURE", object=rig)
+    rig = rig_halves(sheet)
     bone = rig.pose.bones["B"]
     bone.rotation_mode = "XYZ"
     for frame, x, z, angle in ((1, 0.2, 0, 0), (4, 0.2, 0, 0), (5, 0, 0, 0.4), (6, -0.1, 0, 0.4), (7, 0.2, 0, 0)):

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from building import add_modifier, select, shift, turn
-from torn_sheets import CROSSING, LEFT, PARTING, RIGHT, add_key, cutting_faces, named, torn_sheet
+from building import shift, turn
+from torn_sheets import CROSSING, LEFT, PARTING, RIGHT, add_key, cutting_faces, named, rig_halves, torn_sheet
 
 from blend_fixtures.characters import select_bones
 from stiv.blender import BlenderEdit, EditSettings, MorphEdit, Motion, check_scene, morph
@@ -44,17 +44,8 @@ def test_a_drag_of_a_key_names_them_at_each_value() -> None:
 
 def test_a_pose_names_faces_that_cut_at_a_seam_it_tears() -> None:
     sheet = torn_sheet()
-    rig = bpy.data.objects.new("Rig", bpy.data.armatures.new("Rig"))
-    bpy.context.collection.objects.link(rig)
-    select(rig)
-    bpy.ops.object.mode_set(mode="EDIT")
-    for name, x in (("A", -0.5), ("B", 0.5)):
-        bone = rig.data.edit_bones.new(name)
-        bone.head, bone.tail = (x, 0.5, 0), (x, 1.5, 0)
+    rig = rig_halves(sheet)
     bpy.ops.object.mode_set(mode="POSE")
-    for name, vertices in (("A", range(4)), ("B", range(4, 8))):
-        sheet.vertex_groups.new(name=name).add(list(vertices), 1.0, "REPLACE")
-    add_modifier(sheet, "ARMATURE", object=rig)
     select_bones(rig, "B")
     for along, count in ((0.3, 0), (-0.3, 2)):
         edit = BlenderEdit.begin(bpy.context, SETTINGS, "rotate")

@@ -121,20 +121,29 @@ def test_a_drag_repeats_its_solves_only_within_its_time(monkeypatch: pytest.Monk
     assert check_scene(bpy.context).pairs == () and np.array_equal(solved[-1], edit.goal)
 
 
+def write_and_watch(
+    edit: BlenderEdit, quad: Any, is_cancelled: bool = False
+) -> tuple[state_writer.WriteReport, list[float]]:
+    """The report of a write, and the height of the wings that the scene shows at each of its steps."""
+    steps, shown, outcome = edit.write_steps(), [], None
+    while True:
+        try:
+            call = steps.send(outcome)
+        except StopIteration as end:
+            return end.value, shown
+        shown.append(evaluated(quad)[WINGS, 2].max())
+        outcome = is_cancelled if call is None else call.run()
+
+
 def test_a_write_shows_the_last_written_state_while_it_solves_again() -> None:
     """Others look at the scene then: the window draws it, and may save it."""
     quad = add_quad(0)
     add_post()
     edit = begin_with_wings(quad)
     edit.apply(shift(z=2))
-    steps, shown, outcome = edit.write_steps(), [], None
-    with pytest.raises(StopIteration) as end:
-        while True:
-            call = steps.send(outcome)
-            shown.append(evaluated(quad)[WINGS, 2].max())
-            outcome = None if call is None else call.run()
+    report, shown = write_and_watch(edit, quad)
     assert len(shown) > 1 and set(shown) == {0.0}
-    assert end.value.value.passed and evaluated(quad)[WINGS, 2].min() > 0.2
+    assert report.passed and evaluated(quad)[WINGS, 2].min() > 0.2
 
 
 def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_cancelled(
@@ -151,14 +160,9 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
         monkeypatch.setattr(state_writer, "nudged", lambda controls, last: iter(()))
         for height in np.linspace(0.1, 2, 20):
             edit.drag(shift(z=height))
-        steps, shown, outcome = edit.write_steps(), [], None
-        with pytest.raises(StopIteration) as end:
-            while True:
-                call = steps.send(outcome)
-                shown.append(evaluated(quad)[WINGS, 2].max())
-                outcome = is_cancelled if call is None else call.run()
+        report, shown = write_and_watch(edit, quad, is_cancelled)
         assert len(shown) > 0 and set(shown) == {0.0}
-        assert end.value.value.message and check_scene(bpy.context).pairs == ()
+        assert report.message and check_scene(bpy.context).pairs == ()
         found[is_cancelled] = len(shown), evaluated(quad)[WINGS, 2].min()
     assert found[True][0] < found[False][0] and 0.89 < found[False][1] < 1.1
     assert found[True][1] <= found[False][1]
