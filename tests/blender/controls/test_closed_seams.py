@@ -25,6 +25,7 @@ from stiv.blender import (
     morph,
 )
 from stiv.blender.controls.closed_seams import MergedRows
+from stiv.blender.edit.snapshot import find_moving_vertices
 from stiv.seams import Seams
 
 SETTINGS = EditSettings(separation=0.01)
@@ -230,6 +231,7 @@ def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
         assert move(edit, 1.2).status in ("reached", "unchanged") and edit.write().passed
         assert bone.rotation_euler.x == pytest.approx(1.2, abs=1e-4)
         assert len(edit.surface) == 8 and widest_gap(sheet, start) > 0.1
+        assert np.array_equal(edit._moving_vertices, find_moving_vertices(edit.assembly, edit.control_sets))
         assert cutting_faces(sheet) == count
         assert [named(note) for note in edit.untested_notes] == ([count] if count else [])
         edit.restore()

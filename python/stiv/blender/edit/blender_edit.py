@@ -399,7 +399,7 @@ class BlenderEdit:
         restore_controls(self.control_sets)
         edit = BlenderEdit((yield from self._read(torn)), self._read)
         yield from edit._solver.start()
-        vars(self).pop("_writer", None)
+        vars(self).clear()  # also what was computed from the assembly before
         vars(self).update(vars(edit))
         self._goal, self._motion, self._torn = goal, motion, torn
         return True
