@@ -17,6 +17,7 @@ from stiv.blender.edit.sessions import assemble_with_controls
 from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.deferred_meshes import compute_meshes_steps
 from stiv.blender.scene.dependencies import find_dependents
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.exclusions import drop_stale
@@ -73,6 +74,7 @@ def take_snapshot_steps(
     if settings.guard == "auto" and any(_is_animated(context, each) for each in participants):
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
     turns = Turns()
+    yield from compute_meshes_steps(context)
     scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, extents, transform_points
+from stiv.blender.scene.deferred_meshes import EqualMeshes
 from stiv.blender.scene.evaluations import (
     EVALUATIONS,
     RENDER,
@@ -200,9 +201,13 @@ def read_scene(
             def is_surface(owner: bpy.types.Object, is_wanted: Any = is_wanted) -> bool:
                 return owner.name not in static and bool(is_wanted(owner))
 
+            equal = EqualMeshes(opened.depsgraph(read_from))
             for instance, owner, source in opened.instances(read_from, is_surface):
                 shown_in = opened.shown_in(read_from, owner.session_uid)
-                meshes.append(_read_mesh(instance, owner, source, read_from, shown_in))
+                evaluated = equal.representative(instance.object)
+                meshes.append(
+                    _read_mesh(evaluated, as_matrix(instance.matrix_world), owner, source, read_from, shown_in)
+                )
             if strands:
                 found += _read_strands(context, opened, read_from, is_wanted)
         if strands:
@@ -227,14 +232,14 @@ def read_positions_of(
 
 
 def _read_mesh(
-    instance: bpy.types.DepsgraphObjectInstance,
+    evaluated: bpy.types.Object,
+    matrix: Floats,
     shown_by: bpy.types.Object,
     data_of: bpy.types.Object,
     read_from: str,
     shown_in: frozenset[str],
 ) -> VisibleMesh:
-    matrix = as_matrix(instance.matrix_world)
-    with evaluated_mesh(instance.object) as mesh:
+    with evaluated_mesh(evaluated) as mesh:
         triangles, faces = read_triangles(mesh)
         loose = read_loose_numbers(mesh)
         edges = read_edges(mesh)[loose] if len(loose) else np.empty((0, 2), np.int32)

@@ -12,6 +12,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices, Singles, as_matrix, read_collection, transform_points
+from stiv.blender.scene.deferred_meshes import EqualMeshes
 from stiv.blender.scene.evaluated_scene import check_finite_positions
 from stiv.blender.scene.evaluations import SHOWN
 from stiv.blender.scene.mesh_reading import read_edges, view_corner_edges, view_corner_vertices, view_positions
@@ -33,11 +34,12 @@ def read_static_meshes(
     global _latest
     found: dict[tuple[ObjectReference, str, int], StaticMesh] = {}
     counts: Counter[ObjectReference] = Counter()
+    equal = EqualMeshes(context.evaluated_depsgraph_get())
     for instance, owner, source in OpenEvaluations(context).instances(SHOWN, lambda ob: ob.name in names):
         reference = ObjectReference.of(owner)
         counts[reference] += 1
         key = (reference, source.name, counts[reference])
-        reader = _Reader(instance.object.data, as_matrix(instance.matrix_world))
+        reader = _Reader(equal.representative(instance.object).data, as_matrix(instance.matrix_world))
         known = _latest.get(key)
         if known is None or known.shown_in != shown_in or not reader.agrees_with(known):
             known = reader.read(reference, source.name, shown_in)
