@@ -88,7 +88,11 @@ def test_equal_stacks_are_computed_once() -> None:
     objects = linked("MIRROR", "SUBSURF", count=5)
     objects[3].modifiers[1].name = "Other"
     assert representatives(objects) == {"Suzanne 0"}
+    text = bpy.data.curves.new("Text", "FONT")
+    text.body = "ab"
+    add_modifier(add("Text", text, (0, 9, 0)), "SUBSURF")
     run(compute_meshes_steps(bpy.context))
+    bpy.data.objects.remove(bpy.data.objects["Text"])
     check_against_blender(objects)
 
 

@@ -7,7 +7,7 @@ one mesh through equal modifiers.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 
 import bpy
 
@@ -53,11 +53,10 @@ class EqualMeshes:
 
 def _visible_meshes(context: bpy.types.Context) -> list[ObjectReference]:
     """Objects that show meshes with modifiers, themselves or as instances; Blender's list ends with the next step."""
-    found: Iterator[bpy.types.Object] = (
-        instance.object
-        for instance, _, _ in OpenEvaluations(context).instances(SHOWN, lambda owner: is_visible(context, owner))
-    )
-    return list(dict.fromkeys(ObjectReference.of(ob) for ob in found if len(ob.modifiers)))
+    instances = OpenEvaluations(context).instances(SHOWN, lambda owner: is_visible(context, owner))
+    sources = (instance.object.original for instance, _, _ in instances)
+    meshes = (ob for ob in sources if ob.type == "MESH" and len(ob.modifiers))  # texts are shown as meshes too
+    return list(dict.fromkeys(map(ObjectReference.of, meshes)))
 
 
 def _mesh_key(shown: bpy.types.Object) -> Settings | None:
