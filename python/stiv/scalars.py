@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from stiv import _native
 from stiv._native import InputError
 from stiv.arrays import Floats, as_reals
+from stiv.task import Steps, run
 
 __all__ = ["ScalarDeformation", "difference_jacobian", "scalars"]
 
@@ -111,12 +112,25 @@ def difference_jacobian(
 
     Raises InputError if there is no surface at `values`, or for shapes that do not match.
     """
+    return run(difference_jacobian_steps(evaluate, values, step, lower=lower, upper=upper))
+
+
+def difference_jacobian_steps(
+    evaluate: Evaluate,
+    values: ArrayLike,
+    step: ArrayLike = 1e-3,
+    *,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+) -> Steps[Floats]:
+    """Return the steps of :func:`difference_jacobian`, which give a turn after each call of `evaluate`."""
     at = as_reals(values, "values", (None,))
     count = len(at)
     here = evaluate(at.copy())
     if here is None:
         raise InputError("values: evaluate has no surface there; give the Jacobian at others")
     here = as_reals(here, "result of evaluate", (None, 3))
+    yield None
     steps = _of_each(step, "step", 0, count)
     least = np.maximum(at - steps, _of_each(lower, "lower", -np.inf, count))
     most = np.minimum(at + steps, _of_each(upper, "upper", np.inf, count))
@@ -127,6 +141,7 @@ def difference_jacobian(
             moved = at.copy()
             moved[k] = value
             surface = evaluate(moved)
+            yield None
             if surface is not None:
                 ends.append((value, as_reals(surface, "result of evaluate", here.shape)))
         (first, before), (last, after) = min(ends, key=lambda end: end[0]), max(ends, key=lambda end: end[0])

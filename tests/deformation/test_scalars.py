@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import ArrayLike, NDArray
 
 import stiv
+from stiv.scalars import difference_jacobian_steps
 from tests.examples import examples
 from tests.oracles.path import find_contacts
 
@@ -258,6 +259,25 @@ def test_differences_at_limits_and_beside_missing_surfaces() -> None:
     assert np.allclose(one_side, exact, atol=1e-5)
     nowhere = stiv.difference_jacobian(lambda v: arm(v) if (v == START).all() else None, START, [1e-6, 1e-6, 1e-6])
     assert (nowhere == 0).all() and nowhere.shape == (16, 3, 3)
+
+
+def test_the_steps_of_differences_give_a_turn_after_each_surface() -> None:
+    calls: list[Floats] = []
+
+    def noted(values: Floats) -> Floats:
+        calls.append(values)
+        return arm(values)
+
+    steps, turns = difference_jacobian_steps(noted, START, 1e-6), 0
+    while True:
+        try:
+            assert next(steps) is None
+        except StopIteration as end:
+            assert np.allclose(end.value, derivative(START), atol=1e-5)
+            break
+        turns += 1
+        assert len(calls) == turns
+    assert turns == 1 + 2 * len(START)
 
 
 def start_at(values: ArrayLike, **options: Any) -> stiv.EditSession:

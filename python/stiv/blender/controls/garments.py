@@ -17,12 +17,13 @@ from stiv.blender.controls.control_set import ControlSet, Participant, ShownAs, 
 from stiv.blender.controls.handles import make_handle_sets
 from stiv.blender.controls.joined_seams import followed_controls, join_controls
 from stiv.blender.controls.lattice_points import check_lattice, make_lattice_set
-from stiv.blender.controls.stack_jacobian import PROBE, find_frames
+from stiv.blender.controls.stack_jacobian import PROBE, find_frames_steps
 from stiv.blender.controls.subdivision import identity_weights
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, run
 
 STEP = 0.01  # of differences, in sizes of the garment
 LEAST_WEIGHT = 1e-3  # of a measured weight, so that the Jacobian stays sparse
@@ -59,9 +60,13 @@ class Garment:
 
         evaluate: positions of all vertices from the controls of this garment. rows: its vertices among them.
         """
+        return run(self.blocks_steps(evaluate, controls, rows))
+
+    def blocks_steps(self, evaluate: Evaluate, controls: Floats, rows: Indices) -> Steps[Blocks]:
+        """Steps of `blocks`, which give a turn after a few evaluations."""
         step = STEP * (float(np.ptp(controls, axis=0).max()) or 1.0)
-        frames = find_frames(lambda moved: _rows_of(evaluate(moved), rows), controls, step)
-        weights = self.weights or _measured_weights(evaluate, controls, rows, step)
+        frames = yield from find_frames_steps(lambda moved: _rows_of(evaluate(moved), rows), controls, step)
+        weights = self.weights or (yield from _measured_weights(evaluate, controls, rows, step))
         if frames is None:  # unknown where the topology changes: as if the garment kept its frame
             frames = np.broadcast_to(np.eye(3), (len(rows), 3, 3))
         own = np.repeat(np.arange(len(rows), dtype=np.int32), np.diff(weights.indptr))
@@ -148,14 +153,15 @@ def _is_deformed_by(ob: bpy.types.Object, lattice: bpy.types.Object) -> bool:
     return any(isinstance(each, bpy.types.LatticeModifier) and each.object == lattice for each in ob.modifiers)
 
 
-def _measured_weights(evaluate: Evaluate, controls: Floats, rows: Indices, step: float) -> stiv.Weights:
-    """Weights by moving each control alone; they sum to 1 for each vertex that follows any."""
+def _measured_weights(evaluate: Evaluate, controls: Floats, rows: Indices, step: float) -> Steps[stiv.Weights]:
+    """Steps to weights by moving each control alone; they sum to 1 for each vertex that follows any."""
     here = evaluate(controls)
     lengths = np.zeros((len(rows), len(controls)))
     for number in range(len(controls)):
         moved = controls.copy()
         moved[number] += step * PROBE
         there = evaluate(moved)
+        yield None
         if here is not None and there is not None:
             lengths[:, number] = np.linalg.norm((there - here)[rows], axis=1)
     lengths /= np.maximum(lengths.sum(axis=1, keepdims=True), np.finfo(np.float64).tiny)

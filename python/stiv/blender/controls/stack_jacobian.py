@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles
 from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin
+from stiv.task import Steps, run
 
 PROBE = np.array([0.36, 0.48, 0.8])  # direction in which moments move all vertices
 HALVINGS = (1.0, 1 / 8, 1 / 64)  # of the step of differences, if the topology changes
@@ -35,7 +36,17 @@ def find_frames(evaluate: Callable[[Floats], Floats | None], controls: Floats, s
 
     evaluate: world positions, (n, 3), or None where the topology differs. step: of central differences.
     """
-    columns = [_difference(evaluate, controls, axis * step) for axis in np.eye(3)]
+    return run(find_frames_steps(evaluate, controls, step))
+
+
+def find_frames_steps(
+    evaluate: Callable[[Floats], Floats | None], controls: Floats, step: float
+) -> Steps[Floats | None]:
+    """Steps of `find_frames`, which give a turn after each axis."""
+    columns: list[Floats | None] = []
+    for axis in np.eye(3):
+        columns.append(_difference(evaluate, controls, axis * step))
+        yield None
     found = [column for column in columns if column is not None]
     return np.stack(found, axis=2) if len(found) == 3 else None
 
