@@ -16,11 +16,13 @@ from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..reports import message_text, report_error, say
 from ..task_operator import TimeLimitProperty
+from . import redo_limit
+from .morph_in_steps import MorphInSteps
 
-DIALOG_TIME_LIMIT = 10.0  # seconds: Blender stands still until a morph of the dialog ends
+REDO_TIME_LIMIT = 10.0  # seconds: Blender waits while the redo panel repeats a morph
 
 
-class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
+class STIV_OT_morph(MorphInSteps, NeedsNativeModule, bpy.types.Operator):
     """Move shape key values until surfaces touch"""
 
     bl_idname = "stiv.morph"
@@ -32,6 +34,8 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
     time_limit: TimeLimitProperty(
         description="Take the best result within this time; 0 for no limit", options={"HIDDEN", "SKIP_SAVE"}
     )
+
+    _is_invoked = False  # the dialog calls the next `execute`
 
     @classmethod
     def is_available(cls, context: bpy.types.Context) -> bool:
@@ -45,7 +49,7 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         for block in stiv_blender.movable_keys(context.active_object):
             row = self.keys.add()
             row.name, row.value = block.name, block.value
-        self.time_limit = DIALOG_TIME_LIMIT
+        self._is_invoked = True
         result: set[str] = context.window_manager.invoke_props_dialog(self)
         return result
 
@@ -58,31 +62,53 @@ class STIV_OT_morph(NeedsNativeModule, bpy.types.Operator):
         self.layout.prop(self, "time_limit")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Move the keys whose value differs from the given one, and report; or take the result of a drag."""
+        """Move the keys whose value differs from the given one, and report; or take the result of a drag.
+
+        From the dialog in steps, with progress in the header; at once from scripts and from the redo panel.
+        """
+        in_steps, self._is_invoked = self._is_invoked and not bpy.app.background, False
         ob = context.active_object
-        found, late = _take_dragged(), ""
-        if found is None:
-            present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
-            values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
-            if not values:
-                self.report({"INFO"}, translate("No value changes"))
-                return {"CANCELLED"}
-            settings = edit_settings(context.scene, time_budget=self.time_limit)
-            try:
-                found = stiv_blender.morph(context, {ob.name: values}, settings, others_yield=self.others_yield)
-            except Exception as error:  # nothing may stay half done, whatever went wrong
-                return report_error(self, error)
-            late = _late_text(found, {(ob.name, key): value for key, value in present.items()})
-        values = {key: value for (_, key), value in found.values.items()}
-        described = {"status": found.status, "blocking": found.blocking, "values": values}
+        present = {block.name: block.value for block in ob.data.shape_keys.key_blocks}
+        self._before = {(ob.name, key): value for key, value in present.items()}
+        dragged = _take_dragged()
+        if dragged is not None:
+            return self.finish_task(context, dragged)
+        values = {row.name: row.value for row in self.keys if row.value != present.get(row.name)}
+        if not values:
+            self.report({"INFO"}, translate("No value changes"))
+            return {"CANCELLED"}
+        try:
+            settings = edit_settings(context.scene, time_budget=self._time_budget())
+            morph = stiv_blender.MorphTask(context, {ob.name: values}, settings, others_yield=self.others_yield)
+            if in_steps:
+                return self.start_morph(context, morph)
+            found = stiv_blender.run_steps(morph.solve_steps())
+        except Exception as error:  # nothing may stay half done, whatever went wrong
+            return report_error(self, error)
+        return self.finish_task(context, found)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender closes the dialog, or ends the running morph."""
+        if not self._is_invoked:
+            super().cancel(context)
+
+    def finish_task(self, context: bpy.types.Context, result: stiv_blender.MorphReport) -> set[str]:
+        """Report."""
+        values = {key: value for (_, key), value in result.values.items()}
+        described = {"status": result.status, "blocking": result.blocking, "values": values}
         context.window_manager.stiv_last_edit = json.dumps(described)
-        for note in filter(None, (*found.start_notes, found.torn_seam_note)):
+        for note in filter(None, (*result.start_notes, result.torn_seam_note)):
             self.report({"WARNING"}, message_text(note))
-        if late:
+        if late := _late_text(result, self._before):
             self.report({"WARNING"}, late)
-        elif text := result_text(found.status, found.blocking, translate, stiv_blender.fit_message):
+        elif text := result_text(result.status, result.blocking, translate, stiv_blender.fit_message):
             say(self, "INFO", text)
         return {"FINISHED"}
+
+    def _time_budget(self) -> float:
+        if not redo_limit.is_redo(self):
+            return float(self.time_limit)
+        return min(self.time_limit or REDO_TIME_LIMIT, REDO_TIME_LIMIT)
 
 
 def _late_text(found: stiv_blender.MorphReport, before: dict[tuple[str, str], float]) -> str:

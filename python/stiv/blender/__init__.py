@@ -33,7 +33,7 @@ from stiv.blender.layout.packing import FitInto, FitSettings, fit_into
 from stiv.blender.layout.placing import Place, PlaceSettings, place
 from stiv.blender.layout.pushing_apart import PushApart, push_apart
 from stiv.blender.morphing.key_sliders import movable_keys
-from stiv.blender.morphing.morph import MorphReport, morph
+from stiv.blender.morphing.morph import MorphReport, MorphTask, morph
 from stiv.blender.morphing.morph_edit import MorphEdit
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
@@ -93,6 +93,7 @@ __all__ = [
     "LoopSurface",
     "MorphEdit",
     "MorphReport",
+    "MorphTask",
     "Motion",
     "ObjectState",
     "ObjectsIntersectError",

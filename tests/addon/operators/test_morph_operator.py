@@ -11,6 +11,9 @@ import pytest
 bpy = pytest.importorskip("bpy")
 
 from stiv.blender import check_scene  # noqa: E402
+from stiv_addon.operators.transform import morph as morph_module  # noqa: E402
+from stiv_addon.operators.transform.morph import STIV_OT_morph  # noqa: E402
+from stiv_addon.operators.transform.morph_in_steps import MorphInSteps  # noqa: E402
 
 pytestmark = pytest.mark.usefixtures("registered")
 
@@ -59,15 +62,112 @@ class Rows(list[SimpleNamespace]):
         return self[-1]
 
 
-def test_the_dialog_begins_with_the_values_and_a_short_time_limit(ball: Any) -> None:
-    from stiv_addon.operators.transform import morph as module
-
+def test_the_dialog_begins_with_the_values(ball: Any) -> None:
     ball.data.shape_keys.key_blocks["Thin"].value = 0.25
-    operator = SimpleNamespace(keys=Rows(), time_limit=120.0)
+    operator = SimpleNamespace(keys=Rows())
     manager = SimpleNamespace(invoke_props_dialog=lambda shown: {"RUNNING_MODAL"})
-    module.STIV_OT_morph.invoke(operator, SimpleNamespace(active_object=ball, window_manager=manager), None)
+    STIV_OT_morph.invoke(operator, SimpleNamespace(active_object=ball, window_manager=manager), None)
     assert [(row.name, row.value) for row in operator.keys] == [("Wide", 0.0), ("Thin", 0.25)]
-    assert operator.time_limit == module.DIALOG_TIME_LIMIT
+
+
+class InWindow(MorphInSteps):
+    """The operator as a window runs it after its dialog, without the window."""
+
+    bl_label = "Morph"
+    others_yield = False
+    time_limit = 120.0
+    _is_invoked = True
+    execute, finish_task, _time_budget = STIV_OT_morph.execute, STIV_OT_morph.finish_task, STIV_OT_morph._time_budget
+
+    def __init__(self, **values: float) -> None:
+        self.keys = [SimpleNamespace(name=name, value=goal) for name, goal in values.items()]
+        self.options = SimpleNamespace(is_repeat=False)
+        self.reported: list[tuple[set[str], str]] = []
+
+    def report(self, kind: set[str], text: str) -> None:
+        self.reported.append((kind, text))
+
+
+class Context:
+    """Blender's own context with another window manager, which counts timers."""
+
+    def __init__(self) -> None:
+        self.timers = 0
+        self.window_manager = SimpleNamespace(
+            event_timer_add=self._add, event_timer_remove=self._remove, modal_handler_add=lambda _: None, windows=()
+        )
+
+    def _add(self, seconds: float, window: Any) -> str:
+        self.timers += 1
+        return "timer"
+
+    def _remove(self, timer: str) -> None:
+        self.timers -= 1
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(bpy.context, name)
+
+
+@pytest.fixture
+def windowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the operator think that there is a window."""
+    app = SimpleNamespace(background=False)
+    monkeypatch.setattr(morph_module, "bpy", SimpleNamespace(app=app, types=bpy.types))
+
+
+def event(kind: str) -> Any:
+    return SimpleNamespace(type=kind, value="PRESS")
+
+
+@pytest.mark.usefixtures("windowed")
+def test_after_the_dialog_timers_solve_and_the_result_is_that_of_a_script(ball: Any) -> None:
+    operator, context = InWindow(Wide=1.0), Context()
+    assert operator.execute(context) == {"RUNNING_MODAL"}
+    assert operator.modal(context, event("A")) == {"RUNNING_MODAL"}
+    while operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}:
+        assert value(ball, "Wide") == 0
+    in_window, said = value(ball, "Wide"), context.window_manager.stiv_last_edit
+    assert context.timers == 0 and operator.reported[-1][0] == {"INFO"}
+    ball.data.shape_keys.key_blocks["Wide"].value = 0
+    assert morph(Wide=1.0) == {"FINISHED"}
+    assert (value(ball, "Wide"), bpy.context.window_manager.stiv_last_edit) == (in_window, said)
+    ball.data.shape_keys.key_blocks["Wide"].value = 0
+    assert operator.execute(context) == {"FINISHED"}  # the redo panel
+    assert value(ball, "Wide") == in_window
+
+
+@pytest.mark.usefixtures("windowed")
+@pytest.mark.parametrize("ends", ["ESC", "cancel"])
+def test_esc_and_blender_end_a_morph_with_the_values_of_its_start(ball: Any, ends: str) -> None:
+    operator, context = InWindow(Wide=1.0), Context()
+    operator.execute(context)
+    operator.modal(context, event("TIMER"))
+    if ends == "ESC":
+        assert operator.modal(context, event("ESC")) == {"CANCELLED"}
+        assert "cancelled" in operator.reported[-1][1]
+    else:
+        operator.cancel(context)
+    assert value(ball, "Wide") == value(ball, "Thin") == 0 and context.timers == 0
+
+
+@pytest.mark.usefixtures("windowed")
+def test_a_start_that_intersects_is_refused_after_the_dialog(ball: Any) -> None:
+    bpy.data.objects["Plane"].location.x = 0.5
+    operator, context = InWindow(Wide=1.0), Context()
+    assert operator.execute(context) == {"RUNNING_MODAL"}
+    while (outcome := operator.modal(context, event("TIMER"))) == {"RUNNING_MODAL"}:
+        pass
+    assert outcome == {"CANCELLED"} and context.timers == 0 and value(ball, "Wide") == 0
+    assert operator.reported[-1][0] == {"ERROR"} and "intersect" in operator.reported[-1][1]
+
+
+def test_the_redo_panel_waits_for_a_short_time(ball: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    operator = InWindow(Wide=1.0)
+    assert operator._time_budget() == 120
+    monkeypatch.setattr(morph_module.redo_limit, "is_redo", lambda _: True)
+    for chosen, limit in ((120.0, morph_module.REDO_TIME_LIMIT), (0.0, morph_module.REDO_TIME_LIMIT), (2.0, 2.0)):
+        operator.time_limit = chosen
+        assert operator._time_budget() == limit
 
 
 def test_the_other_keys_yield(ball: Any) -> None:

@@ -135,7 +135,8 @@ def _correct_keys(
     sliders, goals, given = find_sliders(values, False)
     wanted, is_given = np.array(goals), np.array(given)
     limited = replace(settings, time_budget=MORPHING_TIME)
-    edit = MorphEdit(context, limited, sliders, is_given, *limits_toward(sliders, wanted, is_given))
+    limits = limits_toward(sliders, wanted, is_given)
+    edit = MorphEdit.begin_with(context, limited, sliders, limits)
     result, message = yield from _move_sliders(edit, wanted, end)
     notes = (edit.torn_seam_note,) if edit.torn_seam_note else ()
     if np.array_equal(edit.values, wanted) and not edit.has_moved_clothes:

@@ -11,8 +11,11 @@ import numpy as np
 
 from stiv.blender.morphing.key_sliders import KeySlider, find_sliders
 from stiv.blender.morphing.morph_edit import MorphEdit
+from stiv.blender.morphing.morph_session import SliderLimits
+from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.settings import EditSettings
+from stiv.task import Steps, run
 
 
 @dataclass(frozen=True)
@@ -55,30 +58,69 @@ def morph(
 
     Raises InputError naming object and key, StartIntersectsError if objects intersect at the start; nothing changed.
     """
-    sliders, goals, given = find_sliders(values, others_yield)
-    wanted, is_given = np.array(goals), np.array(given)
-    lower, upper = limits_toward(sliders, wanted, is_given)
-    edit = MorphEdit(context, settings, sliders, is_given, lower, upper, others_yield)
-    try:
-        report = _solve(edit, wanted, settings.time_budget)
-    except BaseException:
-        edit.restore()
-        raise
-    edit.insert_keyframes(context)
-    return report
+    return run(MorphTask(context, values, settings, others_yield=others_yield).solve_steps())
 
 
-def limits_toward(sliders: Sequence[KeySlider], goals: Floats, given: Flags) -> tuple[Floats, Floats]:
+class MorphTask:
+    """A morph in steps, which write its result. Reading and writing require Blender's main thread."""
+
+    def __init__(
+        self,
+        context: bpy.types.Context,
+        values: Mapping[str, Mapping[str, float]],
+        settings: EditSettings,
+        *,
+        others_yield: bool = False,
+    ) -> None:
+        """Find the sliders. The arguments are those of `morph`. Raises InputError."""
+        self._context, self._settings = context, settings
+        self._sliders, goals, given = find_sliders(values, others_yield)
+        self._goals = np.array(goals)
+        self._limits = limits_toward(self._sliders, self._goals, np.array(given), others_yield)
+        self._scene: MorphedScene | None = None
+
+    def solve_steps(self) -> Steps[MorphReport]:
+        """Steps of `morph`. If they raise or are closed, the scene shows the start.
+
+        Between steps, and while a job solves, the scene may show values that intersect: call `write_tested`.
+        """
+        scene = self._scene = MorphedScene(self._context, self._settings, self._sliders)
+        yield None
+        edit = yield from MorphEdit.begin_in_steps(scene, self._sliders, self._limits)
+        try:
+            report = yield from _solve_steps(edit, self._goals, self._settings.time_budget)
+        except BaseException:
+            edit.restore()
+            raise
+        edit.insert_keyframes(self._context)
+        return report
+
+    def write_tested(self) -> None:
+        """Write the last values that passed the test, which are those of the start until the last step."""
+        if self._scene is not None:
+            self._scene.write_tested()
+
+    def restore(self) -> None:
+        """Restore the start exactly."""
+        if self._scene is not None:
+            self._scene.restore()
+
+
+def limits_toward(
+    sliders: Sequence[KeySlider], goals: Floats, given: Flags, others_yield: bool = False
+) -> SliderLimits:
     """Limits, (k,) each, within which no given slider passes its goal."""
     start, least, most = (np.array([getattr(s, name) for s in sliders]) for name in ("start", "lower", "upper"))
     nearest = np.clip(goals, least, most)
-    return np.where(given, np.minimum(start, nearest), least), np.where(given, np.maximum(start, nearest), most)
+    lower = np.where(given, np.minimum(start, nearest), least)
+    return SliderLimits(given, lower, np.where(given, np.maximum(start, nearest), most), others_yield)
 
 
-def _solve(edit: MorphEdit, goals: Floats, time_budget: float) -> MorphReport:
-    """Move the sliders toward their goals, and leave the scene at the closest values that Blender shows free."""
-    result, arrived = edit.advance(goals, time_budget or np.inf)
-    settled = edit.settle() if arrived else result
+def _solve_steps(edit: MorphEdit, goals: Floats, time_budget: float) -> Steps[MorphReport]:
+    """Steps that move sliders toward goals, and leave the scene at the closest values that Blender shows free."""
+    result, arrived = yield from edit.advance_steps(goals, time_budget or np.inf)
+    settled = (yield from edit.settle_steps()) if arrived else result
+    yield None
     edit.show()
     status = settled.status if settled.status != "unchanged" else result.status
     if not arrived:

@@ -9,7 +9,6 @@ from itertools import pairwise
 import bpy
 import numpy as np
 
-import stiv
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed
 from stiv.blender.controls.garments import Blocks, Garment, make_garments, rows_of_blocks
 from stiv.blender.controls.participants import find_clothes
@@ -22,7 +21,9 @@ from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import guard_bent_quads
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
+from stiv.scalars import difference_jacobian_steps
 from stiv.seams import Seams
+from stiv.task import Steps
 
 DIFFERENCE = 0.05  # of the range of a slider, for a Jacobian
 OWN_SLIDER = 1.0  # range of a slider without a range
@@ -32,11 +33,15 @@ CLOTHES_STEP = 0.01  # of controls of clothes, in sizes, that shows which seams 
 class MorphedScene:
     """The surface as a function of controls, (m, 3): rows (value, 0, 0) of sliders, then the controls of clothes.
 
+    Methods whose name ends with ``_steps`` write other controls between their steps, and do not mind any that the
+    caller writes there.
+
     Attributes:
         assembly: objects that no control moves are fixed. Seams of the others that stay closed are merged.
         garments: clothes that yield, by the settings.
         start: the controls at the start, (m, 3).
         written: the controls that Blender shows, (m, 3).
+        tested: the last ones whose evaluation passed the test, (m, 3).
         rows: numbers of the vertices of the assembly among those of all meshes, (N,).
         lower, upper: limits of the sliders, (k,).
         size: diagonal of the surface that controls move.
@@ -47,11 +52,12 @@ class MorphedScene:
         self._context, self._sliders, self.settings = context, sliders, settings
         self.lower, self.upper = (np.array(ends) for ends in zip(*((s.lower, s.upper) for s in sliders), strict=True))
         scene, _ = read_guarded_scene(context, settings)
-        owners = {each.owner.name for each in sliders}
-        clothes = [each for each in find_clothes(context, settings) if each.reference.name not in owners]
+        clothes = [each for each in find_clothes(context, settings) if each.reference.name not in self.owners]
         self.garments: tuple[Garment, ...] = tuple(make_garments(context, clothes, scene.meshes, settings))
         values = np.array([[each.start, 0.0, 0.0] for each in sliders])
-        self.start = self.written = np.concatenate([values, *(each.controls.controls for each in self.garments)])
+        self.start = self.written = self.tested = np.concatenate(
+            [values, *(each.controls.controls for each in self.garments)]
+        )
         self._whole = assemble(scene.meshes, ["deformable"] * len(scene.meshes), (), settings.ignored_pairs)
         self.assembly, self._rest = self._whole, self._whole.positions
         self._fixed = np.zeros(len(self._rest), bool)
@@ -62,6 +68,11 @@ class MorphedScene:
     def count(self) -> int:
         """Number of sliders."""
         return len(self._sliders)
+
+    @property
+    def owners(self) -> set[str]:
+        """Names of the objects that have the sliders."""
+        return {each.owner.name for each in self._sliders}
 
     @property
     def rows(self) -> Indices:
@@ -80,6 +91,15 @@ class MorphedScene:
                 garment.controls.writer.write(controls[own])
         self.written = controls
         self._context.view_layer.update()
+
+    def write_tested(self) -> None:
+        """Write the tested controls, unless Blender shows them."""
+        if self.written is not self.tested:
+            self.write(self.tested)
+
+    def restore(self) -> None:
+        """Write the controls of the start."""
+        self.write(self.start)
 
     def evaluate(self, controls: Floats) -> Floats | None:
         """The surface, (N, 3); None if its topology, or something that no control moves, changes, or a seam opens."""
@@ -105,11 +125,10 @@ class MorphedScene:
         same = np.array_equal(present, controls[: self.count, 0].astype(np.float32))
         return same and self.evaluate(controls) is not None
 
-    def jacobian(self) -> Floats:
-        """The derivative of the surface by the sliders at the present controls, (N, 3, k). Writes other values."""
-        at = self.written
-        found = stiv.difference_jacobian(
-            self.evaluate_values,
+    def jacobian_steps(self, at: Floats) -> Steps[Floats]:
+        """Steps to the derivative of the surface by the sliders at controls, (N, 3, k), written in the end."""
+        found = yield from difference_jacobian_steps(
+            lambda values: self.evaluate(self.with_values(at, values)),
             at[: self.count, 0],
             DIFFERENCE * self._ranges,
             lower=self.lower,
@@ -118,9 +137,8 @@ class MorphedScene:
         self.write(at)
         return found
 
-    def blocks(self, jacobian: Floats) -> tuple[Indices, Indices, Floats, tuple[int, int]]:
-        """The derivative by all controls, as blocks, at the present ones. jacobian: that by the sliders."""
-        at = self.written
+    def blocks_steps(self, jacobian: Floats, at: Floats) -> Steps[tuple[Indices, Indices, Floats, tuple[int, int]]]:
+        """Steps to the derivative by all controls, as blocks, at some. jacobian: that by the sliders."""
         row, slider = (each.astype(np.int32) for each in np.nonzero((jacobian != 0).any(axis=1)))
         found = [Blocks(self.rows[row], slider, jacobian[row, :, slider][:, :, None] * np.array([1.0, 0, 0]))]
         for garment, own in zip(self.garments, self._parts(), strict=True):
@@ -130,25 +148,28 @@ class MorphedScene:
                 moved[own] = controls
                 return self._evaluate_whole(moved)
 
-            made = garment.blocks(evaluate, at[own], self._rows_of(garment))
+            made = yield from garment.blocks_steps(evaluate, at[own], self._rows_of(garment))
             found.append(Blocks(made.rows, made.controls + own.start, made.data))
         self.write(at)
         indptr, columns, data = rows_of_blocks(found, len(self._rest), self.rows)
         return indptr, columns, data, (len(jacobian), len(at))
 
-    def simplify(self, goals: Sequence[Floats], jacobian: Floats) -> Floats:
-        """Fix the objects that no clothes and neither the Jacobian nor any of the goals, (k,), move.
+    def simplify_steps(self, goals: Sequence[Floats], jacobian: Floats) -> Steps[Floats]:
+        """Steps that fix the objects that no clothes and neither the Jacobian nor any of the goals, (k,), move.
 
-        Merges the seams of all others that stay closed there. jacobian: of the start, of all meshes, (n, 3, k); returns
-        that of the assembly.
+        They merge the seams of all others that stay closed there. jacobian: of the start, of all meshes, (n, 3, k);
+        they return that of the assembly.
         """
         moved = (jacobian != 0).any(axis=(1, 2))
         for garment in self.garments:
             moved[self._rows_of(garment)] = True
-        found = [self._evaluate_whole(self.with_values(self.start, goal)) for goal in goals]
-        at_goals = [each for each in found if each is not None]
-        for each in at_goals:
-            moved |= (each != self._rest).any(axis=1)
+        at_goals: list[Floats] = []
+        for goal in goals:
+            found = self._evaluate_whole(self.with_values(self.start, goal))
+            yield None
+            if found is not None:
+                at_goals.append(found)
+                moved |= (found != self._rest).any(axis=1)
         moves = [bool(moved[a:b].any()) for a, b in pairwise(self._whole.starts)]
         mobility = ["deformable" if each else "fixed" for each in moves]
         meshes, ignored = self._whole.meshes, self.settings.ignored_pairs
@@ -156,6 +177,7 @@ class MorphedScene:
         self.size = diagonal_of(self._rest[~self._fixed]) or 1.0
         seams = self._closed_seams(moves, [jacobian * self._ranges, *at_goals])
         self.write(self.start)
+        yield None
         self.assembly = guard_bent_quads(assemble(meshes, mobility, (), ignored, seams), self.settings.threads)
         self._vertices = self._merge(seams)
         return np.asarray(jacobian[self.rows])
