@@ -56,12 +56,14 @@ class TaskOperator(Mixin):
             return {"RUNNING_MODAL"}
         try:
             done = self._advance()
+            fraction = self._task.progress.fraction  # may make a call that the job waits for
+            self.write_between_looks()
         except Exception as error:
             self._leave(context)
             self._restore(error)
             return report_error(self, error)
         if not done:
-            window_io.show_progress(context, self._task.progress.fraction, translate(self.bl_label))
+            window_io.show_progress(context, fraction, translate(self.bl_label))
             return {"RUNNING_MODAL"}
         self._leave(context)
         return self.finish_task(context, self._task.result)
@@ -82,6 +84,9 @@ class TaskOperator(Mixin):
 
     def restore_scene(self) -> None:
         """Restore the start exactly. Does nothing if nothing was written."""
+
+    def write_between_looks(self) -> None:
+        """Write what Blender may draw before the next look, if the calls of a job write something else."""
 
     def _advance(self) -> bool:
         end = time.perf_counter() + self.step_seconds
