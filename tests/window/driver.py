@@ -47,6 +47,7 @@ class Driver:
         from layout_scenarios import LAYOUT
         from measuring import MEASURES
         from morphing_drags import MORPHING_DRAGS
+        from morphing_in_steps import MORPHING_IN_STEPS
         from posing_drags import POSING_DRAGS
         from proportional_editing import PROPORTIONAL_EDITING
         from real_events import REAL_EVENTS
@@ -66,7 +67,7 @@ class Driver:
         drags = DRAGS | FINISHING | DEFORMING_DRAGS | POSING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | SNAPPING_BESIDE_BLENDER | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES
-        usual |= GETTING_STARTED | MORPHING_DRAGS
+        usual |= GETTING_STARTED | MORPHING_DRAGS | MORPHING_IN_STEPS
         chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

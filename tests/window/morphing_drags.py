@@ -12,12 +12,13 @@ from simulation import Steps, Window
 AT_WALL = (0.78, 0.93)  # of the value that touches the wall
 
 
-def _prepare(window: Window) -> Steps:
+def prepare(window: Window, segments: int = 32) -> Steps:
     """A ball of radius 1, whose key Wide doubles it along x; the wall is at 1.9."""
     with window.override():
         scenes.clear()
         ball = scenes.add_mesh(
-            "Ball", lambda mesh: bmesh.ops.create_uvsphere(mesh, u_segments=32, v_segments=16, radius=1)
+            "Ball",
+            lambda mesh: bmesh.ops.create_uvsphere(mesh, u_segments=segments, v_segments=segments // 2, radius=1),
         )
         ball.shape_key_add(name="Basis")
         for name, factor, axis in (("Wide", 2.0, 0), ("Tall", 0.5, 1)):
@@ -35,7 +36,8 @@ def _prepare(window: Window) -> Steps:
     yield from window.rest_at((0.0, 0.0, 0.0))
 
 
-def _value(key: str = "Wide") -> float:
+def value(key: str = "Wide") -> float:
+    """The value of a key of the ball."""
     return float(bpy.data.objects["Ball"].data.shape_keys.key_blocks[key].value)
 
 
@@ -51,53 +53,53 @@ def _right(window: Window, pixels: int) -> tuple[int, int]:
 
 def morphed_by_the_mouse(window: Window) -> Steps:
     """A key stops at the wall, a second one is dragged too; one undo step; Esc and typed values."""
-    yield from _prepare(window)
+    yield from prepare(window)
     yield from _begin(window)
     yield from window.glide(_right(window, 280), 20)
     yield from window.settle(10)
     window.picture("morphed_by_the_mouse")
-    assert AT_WALL[0] < _value() < AT_WALL[1], _value()
+    assert AT_WALL[0] < value() < AT_WALL[1], value()
     window.key("DOWN_ARROW")
     yield from window.glide(_right(window, -150), 10)
     yield from window.settle(10)
     window.picture("morphed_two_keys")
-    assert _value("Tall") < -0.5, _value("Tall")
+    assert value("Tall") < -0.5, value("Tall")
     yield from click(window)
-    wide, tall = _value(), _value("Tall")
+    wide, tall = value(), value("Tall")
     assert AT_WALL[0] < wide < AT_WALL[1] and tall < -0.5, (wide, tall)
     expect_free(window)
     yield from window.undo()
-    assert (_value(), _value("Tall")) == (0.0, 0.0), (_value(), _value("Tall"))
+    assert (value(), value("Tall")) == (0.0, 0.0), (value(), value("Tall"))
     yield from window.redo()
-    assert (_value(), _value("Tall")) == (wide, tall)
+    assert (value(), value("Tall")) == (wide, tall)
     yield from _begin(window)
     yield from window.type("0.25")
     yield from window.settle(10)
-    assert _value() == 0.25, _value()
+    assert value() == 0.25, value()
     yield from click(window, "ESC")
-    assert (_value(), _value("Tall")) == (wide, tall)
+    assert (value(), value("Tall")) == (wide, tall)
     yield from _begin(window)
     yield from window.type("0.25")
     yield from click(window, "RET")
-    assert (_value(), _value("Tall")) == (0.25, tall)
+    assert (value(), value("Tall")) == (0.25, tall)
 
 
 def morphed_under_the_guard(window: Window) -> Steps:
     """Blender's own field of a value, as its release leaves it, is corrected by the live guard in the same step."""
-    yield from _prepare(window)
+    yield from prepare(window)
     bpy.context.scene.stiv.live_transforms = True
     yield from window.settle(20)
     with window.override():
         bpy.data.objects["Ball"].data.shape_keys.key_blocks["Wide"].value = 1.0
         bpy.ops.ed.undo_push(message="Value")
-    yield from window.until(lambda: _value() < AT_WALL[1], "a correction")
+    yield from window.until(lambda: value() < AT_WALL[1], "a correction")
     yield from window.settle(10)
     window.picture("morphed_under_the_guard")
-    assert _value() > AT_WALL[0], _value()
+    assert value() > AT_WALL[0], value()
     expect_free(window)
     yield from window.undo()
     yield from window.settle(20)
-    assert _value() == 0.0, _value()
+    assert value() == 0.0, value()
     bpy.context.scene.stiv.live_transforms = bpy.context.scene.stiv.live_guard = False
 
 
