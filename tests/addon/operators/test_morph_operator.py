@@ -12,6 +12,7 @@ bpy = pytest.importorskip("bpy")
 
 from stiv.blender import check_scene  # noqa: E402
 from stiv_addon.operators.transform import morph as morph_module  # noqa: E402
+from stiv_addon.operators.transform import morph_in_steps  # noqa: E402
 from stiv_addon.operators.transform.morph import STIV_OT_morph  # noqa: E402
 from stiv_addon.operators.transform.morph_in_steps import MorphInSteps  # noqa: E402
 
@@ -110,7 +111,9 @@ class Context:
 
 @pytest.fixture
 def windowed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the operator think that there is a window."""
+    """Let the operator think that there is a window, and look at each step alone."""
+    monkeypatch.setattr(morph_in_steps, "SHORTEST", 0.0)
+    monkeypatch.setattr(morph_in_steps, "LONGEST", 0.0)
     app = SimpleNamespace(background=False)
     monkeypatch.setattr(morph_module, "bpy", SimpleNamespace(app=app, types=bpy.types))
 
@@ -141,7 +144,8 @@ def test_after_the_dialog_timers_solve_and_the_result_is_that_of_a_script(ball: 
 def test_esc_and_blender_end_a_morph_with_the_values_of_its_start(ball: Any, ends: str) -> None:
     operator, context = InWindow(Wide=1.0), Context()
     operator.execute(context)
-    operator.modal(context, event("TIMER"))
+    for _ in range(10):
+        assert operator.modal(context, event("TIMER")) == {"RUNNING_MODAL"}
     if ends == "ESC":
         assert operator.modal(context, event("ESC")) == {"CANCELLED"}
         assert "cancelled" in operator.reported[-1][1]
