@@ -141,4 +141,20 @@ def repeated(window: Window) -> Steps:
     assert values() == (0.25, 0.0) and steps() == history, (values(), history, steps())
 
 
-MORPHING_IN_STEPS = {"morphed_by_the_dialog": morphed_by_the_dialog}
+def morphed_beside_the_guard(window: Window) -> Steps:
+    """The live guard waits for the morph, and leaves its result as it is."""
+    yield from prepare(window, SEGMENTS // 2)
+    bpy.context.scene.stiv.live_transforms = True
+    yield from window.settle(20)
+    history = steps()
+    yield from confirm_dialog(window)
+    yield from ended(window)
+    found = values()
+    assert AT_WALL[0] < found[0] < AT_WALL[1], found
+    yield from window.settle(20)
+    assert values() == found and len(steps()) == len(history) + 1, (values(), found, history, steps())
+    expect_free(window)
+    bpy.context.scene.stiv.live_transforms = bpy.context.scene.stiv.live_guard = False
+
+
+MORPHING_IN_STEPS = {each.__name__: each for each in (morphed_by_the_dialog, morphed_beside_the_guard)}
