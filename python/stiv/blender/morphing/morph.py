@@ -14,6 +14,7 @@ from stiv.blender.morphing.morph_edit import MorphEdit
 from stiv.blender.morphing.morph_session import SliderLimits
 from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.arrays import Flags, Floats
+from stiv.blender.scene.deferred_meshes import compute_meshes_steps
 from stiv.blender.settings import EditSettings
 from stiv.task import Steps, run
 
@@ -84,6 +85,7 @@ class MorphTask:
 
         Between steps, and while a job solves, the scene may show values that intersect: call `write_tested`.
         """
+        yield from compute_meshes_steps(self._context)
         scene = self._scene = MorphedScene(self._context, self._settings, self._sliders)
         yield None
         edit = yield from MorphEdit.begin_in_steps(scene, self._sliders, self._limits)
