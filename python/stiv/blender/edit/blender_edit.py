@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import Any
 
 import bpy
@@ -15,36 +14,32 @@ from numpy.typing import ArrayLike
 import stiv
 from stiv.blender.controls.bone_set import BoneWriter, DressedWriter
 from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.joint_regions import fold_note
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
-from stiv.blender.edit.increments import Path, StillIncrements, split_motion
+from stiv.blender.edit.edit_notes import EditNotes
+from stiv.blender.edit.increments import Path, split_motion
+from stiv.blender.edit.late_seams import LateSeams, start_steps
+from stiv.blender.edit.motion_goal import MotionGoal
 from stiv.blender.edit.results import (
     intersecting_objects,
-    is_cut_by_topology,
-    merge_results,
     round_to_storage,
     unguarded_result,
 )
-from stiv.blender.edit.sessions import restore_controls, split_controls, stack_controls
+from stiv.blender.edit.sessions import restore_controls, split_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot_steps
 from stiv.blender.edit.solver import EditSolver
-from stiv.blender.edit.standstill import contact_text, lock_text
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
-from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.edit.typed_values import apply_increments
+from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.exclusions import intersection_notes, intersects_itself
+from stiv.blender.scene.exclusions import intersects_itself
 from stiv.blender.scene.obstacle_choice import find_obstacles
 from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scene.static_reading import forget_static_meshes
-from stiv.blender.scene.torn_seams import torn_seam_note
 from stiv.blender.settings import EditSettings, check_kind
-from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.task import Steps, run
-
-MOST_TORN = 4  # poses in which seams open, after each of which an edit begins again
 
 
 class BlenderEdit:
@@ -59,22 +54,25 @@ class BlenderEdit:
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
-    def __init__(self, snapshot: EditSnapshot, read: Callable[[Sequence[Floats]], Steps[EditSnapshot]]) -> None:
-        """read: steps that read the snapshot again, with more seams apart, see `Participant.torn`."""
+    def __init__(self, snapshot: EditSnapshot, solver: EditSolver, late_seams: LateSeams) -> None:
+        """solver: started from the snapshot. late_seams: begin the edit again where a seam opens."""
+        self._late_seams = late_seams
+        self._begin_from(snapshot, solver)
+
+    def _begin_from(self, snapshot: EditSnapshot, solver: EditSolver) -> None:
+        """Take a start, and forget all that depends on another one."""
         settings = snapshot.settings
         self.dropped_exclusions, self._snapshot = snapshot.dropped_exclusions, snapshot
         self.guard, self.carried = snapshot.guard, snapshot.carried
-        self._hidden, self._made, self._settings = snapshot.hidden, snapshot.control_sets, settings
-        self._limits: list[tuple[object, ...]] = [()] * len(self._made)
-        self._start = stack_controls([each.controls for each in self._made])
-        self._goal = self._start
-        self._motion: Motion | None = None
+        self._start, self._settings = snapshot.start, settings
         self._taken: TakenState | None = None
-        self._read = read
-        self._torn: tuple[Floats, ...] = ()
         self._began_free = settings.interference
         self._unguarded = None if settings.interference else self._start
-        self._solver = EditSolver(snapshot.assembly, self._made, self._start, settings)
+        self._solver = solver
+        self._goal = MotionGoal(solver, snapshot.control_sets, snapshot.start, settings)
+        self._writer = StateWriter(snapshot.control_sets, solver, settings)
+        self._notes = EditNotes(solver, snapshot.dropped_exclusions, settings.threads)
+        self._moving_vertices = find_moving_vertices(solver.assembly, solver.control_sets)
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
@@ -128,14 +126,9 @@ class BlenderEdit:
             return take_snapshot_steps(bpy.context, settings, kind, chosen, adapt, obstacles)
 
         with kept_twins():
-            first = take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)
-            edit = cls((yield from first), read)
-            yield from edit._solver.start()
-        return edit
-
-    @cached_property
-    def _writer(self) -> StateWriter:
-        return StateWriter(self._made, self._solver, self._settings)
+            reading = take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)
+            snapshot, solver = yield from start_steps(reading)
+        return cls(snapshot, solver, LateSeams(read))
 
     @property
     def start_digest(self) -> str:
@@ -145,7 +138,7 @@ class BlenderEdit:
     @property
     def summary(self) -> Summary:
         """The participants and their warnings. Examines every triangle, so a drag does not call it."""
-        summary = summarise(self.assembly, self.control_sets, self._hidden, self.guard)
+        summary = summarise(self.assembly, self.control_sets, self._snapshot.hidden, self.guard)
         return replace(summary, warnings=(*self.start_notes, *summary.warnings))
 
     @property
@@ -160,11 +153,7 @@ class BlenderEdit:
     @property
     def start_notes(self) -> tuple[str, ...]:
         """Notes about stale exclusions, intersections at the start, untested loose parts, seams, and shared meshes."""
-        dropped = (self.dropped_exclusions,) if self.dropped_exclusions else ()
-        notes = tuple(note for each in self.control_sets for note in (each.note, each.passenger_note) if note)
-        moving = {name for each in self.control_sets for name in each.names}
-        intersecting = intersection_notes(self._solver.intersecting, moving, self._solver.excluded)
-        return (*dropped, *intersecting, *self._solver.loose_part_notes, *notes)
+        return self._notes.start_notes
 
     @property
     def fold_note(self) -> str:
@@ -172,19 +161,12 @@ class BlenderEdit:
 
         Edits of bones do not test them (`EditSettings.joint_region`).
         """
-        if self._unguarded is not None:
-            return ""
-        posed = [each.posed for each in self.control_sets if each.posed is not None]
-        threads = self._settings.threads
-        notes = (fold_note(self.assembly, each.surfaces, each.untested, self.surface, threads) for each in posed)
-        return next(filter(None, notes), "")
+        return self._notes.fold_note if self.interference else ""
 
     @property
     def torn_seam_note(self) -> str:
         """The message on faces at seams that the edit has torn, if they cut each other now; "" without any."""
-        if self._unguarded is not None or not self._solver.excluded.pairs:
-            return ""
-        return torn_seam_note(self.assembly, self._solver.excluded, self.surface, self._settings.threads)
+        return self._notes.torn_seam_note if self.interference else ""
 
     @property
     def untested_notes(self) -> tuple[str, ...]:
@@ -194,24 +176,18 @@ class BlenderEdit:
     @property
     def passenger_note(self) -> str:
         """The message on selected objects without a surface that cannot move along; "" without any."""
-        return next((each.passenger_note for each in self.control_sets), "")
+        return self._notes.passenger_note
 
     def standstill_note(self, result: stiv.EditResult) -> str:
         """Why nothing has moved, from the last result; "" if something has, nothing was to move, or it is not known."""
         if self._unguarded is not None:
             return ""
-        wanted = self._goal - self._start
-        if wanted.any():
-            return contact_text(result, self.assembly, self.moving, (self.controls - self._start, wanted))
-        asked = self._motion is not None and not np.array_equal(self._motion.matrix, np.eye(4))
-        return lock_text(self.control_sets) if asked else ""
+        return self._notes.standstill_note(result, self.moving, self._start, self._goal)
 
     @property
     def reset_note(self) -> str:
         """The message on a placed object that its keyframes reset at the next frame; "" without any."""
-        writers = [each.writer for each in self.control_sets if isinstance(each.writer, PlacementWriter)]
-        keyed = [name for writer in writers for name in writer.changed_with_keyframes()]
-        return f"{keyed[0]}: the next frame resets it to its keyframes; key it" if keyed else ""
+        return self._notes.reset_note
 
     @property
     def control_sets(self) -> tuple[ControlSet, ...]:
@@ -227,7 +203,7 @@ class BlenderEdit:
     def turned(self) -> float:
         """Largest angle, in radians, by which contact has turned a moving object whose goal has no rotation."""
         sets = self.control_sets
-        rows = zip(sets, split_controls(self.controls, sets), split_controls(self._goal, sets), strict=True)
+        rows = zip(sets, split_controls(self.controls, sets), split_controls(self.goal, sets), strict=True)
         return max((each.rule.turned(present, goal) for each, present, goal in rows), default=0.0)
 
     @property
@@ -268,21 +244,21 @@ class BlenderEdit:
     @property
     def goal(self) -> Floats:
         """The goal of all controls, (m, 3)."""
-        return self._goal
+        return self._goal.controls
 
     def goal_of(self, motion: Motion | ArrayLike) -> Floats:
         """Goal, (m, 3), for a motion, which decides how the controls respond. Raises InputError as `drag` does."""
-        chosen_motion = self._motion_of(motion)
-        run(self._limit(chosen_motion))
-        return self._goal_of(chosen_motion)
+        chosen_motion = self._goal.motion_of(motion)
+        run(self._goal.limit_steps(chosen_motion))
+        return self._goal.controls_for(chosen_motion)
+
+    def aim_at(self, motion: Motion) -> None:
+        """Take the goal of a motion without solving for it."""
+        self._goal.controls = self._goal.controls_for(motion)
 
     def moving_points(self, controls: Floats) -> Floats:
         """The points of the surface, (n, 3), that follow the controls, (m, 3)."""
         return self.surface_of(controls)[self._moving_vertices]
-
-    @cached_property
-    def _moving_vertices(self) -> Indices:
-        return find_moving_vertices(self.assembly, self.control_sets)
 
     @property
     def moving(self) -> frozenset[str]:
@@ -304,7 +280,7 @@ class BlenderEdit:
         if accepted.shape != self._start.shape:
             return False
         if motion is not None:
-            run(self._limit(self._motion_of(motion)))
+            run(self._goal.limit_steps(self._goal.motion_of(motion)))
         if self._unguarded is not None:
             self._unguarded = accepted
             return True
@@ -337,7 +313,7 @@ class BlenderEdit:
         present, self._unguarded = self.controls, None
         last_accepted = self._solver.session.controls if self._solver.has_session else None
         try:
-            self._solver.restart_from(present, self._goal)
+            self._solver.restart_from(present, self.goal)
             reason = self._writer.write_and_verify(present).message
         except stiv.StartIntersectsError as error:
             reason = f"{intersecting_objects(error.pairs, self.assembly)} intersect here"
@@ -361,14 +337,15 @@ class BlenderEdit:
         self, motion: Motion | ArrayLike, time_budget: float | None = None, hand_over: float | None = None
     ) -> Steps[stiv.EditResult]:
         """Steps of `drag`; `time_budget` and `hand_over` are those of stiv.EditSession.drag."""
-        chosen_motion = self._motion_of(motion)
-        yield from self._limit(chosen_motion)
-        self._goal, self._motion = self._goal_of(chosen_motion), chosen_motion
+        chosen_motion = self._goal.motion_of(motion)
+        yield from self._goal.limit_steps(chosen_motion)
+        self.aim_at(chosen_motion)
+        self._goal.motion = chosen_motion
         if self._unguarded is not None:
-            self._unguarded = round_to_storage(self.control_sets, split_controls(self._goal, self.control_sets))
+            self._unguarded = round_to_storage(self.control_sets, split_controls(self.goal, self.control_sets))
             return unguarded_result(self._solver.deformation, self._unguarded)
         with kept_twins():
-            result = yield from self._solver.solve(self._goal, time_budget=time_budget, hand_over=hand_over)
+            result = yield from self._solver.solve(self.goal, time_budget=time_budget, hand_over=hand_over)
             if not (yield from self._reopen(result)):
                 return result
         return (yield from self.drag_steps(motion, time_budget, hand_over))
@@ -379,7 +356,7 @@ class BlenderEdit:
 
     def drag_to_steps(self, goal: Floats, time_budget: float | None = None) -> Steps[stiv.EditResult]:
         """Steps of `drag_to`; `time_budget` is that of stiv.EditSession.drag."""
-        self._goal = goal
+        self._goal.controls = goal
         with kept_twins():
             result = yield from self._solver.solve(goal, time_budget=time_budget)
             if not (yield from self._reopen(result)):
@@ -387,29 +364,20 @@ class BlenderEdit:
         return (yield from self.drag_to_steps(goal, time_budget))
 
     def _reopen(self, result: stiv.EditResult) -> Steps[bool]:
-        """Steps that begin again from the start, with seams apart that opened and thereby stopped the edit.
-
-        They return whether they did.
-        """
-        posed = [each.posed for each in self.control_sets if each.posed is not None]
-        opened = [each.opened for each in posed if each.opened is not None]
-        if not opened or not is_cut_by_topology(result) or len(self._torn) >= MOST_TORN:
-            return False
-        goal, motion, torn = self._goal, self._motion, (*self._torn, *opened)
-        restore_controls(self.control_sets)
-        edit = BlenderEdit((yield from self._read(torn)), self._read)
-        yield from edit._solver.start()
-        vars(self).clear()  # also what was computed from the assembly before
-        vars(self).update(vars(edit))
-        self._goal, self._motion, self._torn = goal, motion, torn
-        return True
+        """Steps that begin again if an open seam stopped the edit. They return whether they did."""
+        begun = yield from self._late_seams.begin_again_steps(self.control_sets, result)
+        if begun is not None:
+            goal = self._goal
+            self._begin_from(*begun)
+            self._goal.controls, self._goal.motion = goal.controls, goal.motion
+        return begun is not None
 
     def apply(self, motion: Motion | ArrayLike, path: Path | None = None, **execution: Any) -> stiv.EditResult:
         """Solve for a typed value: approach it in increments of the size of a drag's, then settle.
 
         Where contact holds bones for several increments, only the last one follows: each takes long, and they never
-        go around an obstacle. A time budget of the
-        settings limits the whole call; the result then has the status "budget".
+        go around an obstacle. A time budget of the settings limits the whole call; the result then has the status
+        "budget".
 
         path: from fractions to matrices, for rotations of more than half a turn; None uses the shortest path.
         """
@@ -417,34 +385,11 @@ class BlenderEdit:
 
     def apply_steps(self, motion: Motion | ArrayLike, path: Path | None = None) -> Steps[stiv.EditResult]:
         """Steps of `apply`. If they are cancelled, the increments so far remain."""
+        chosen_motion = self._goal.motion_of(motion)
         with kept_twins():
-            return (yield from self._apply_increments(self._motion_of(motion), path))
-
-    def _apply_increments(self, motion: Motion, path: Path | None) -> Steps[stiv.EditResult]:
-        results: list[stiv.EditResult] = []
-        increments = [*split_motion(motion, path, self.assembly.positions[self._moving_vertices])]
-        is_pose = any(each.posed is not None for each in self.control_sets)
-        still, end = StillIncrements(), deadline_after(self._settings.time_budget)
-        for number, increment in enumerate(increments, 1):
-            if is_pose and still.are_many and number < len(increments):
-                continue
-            yield (number - 1) / len(increments)
-            results.append((yield from self._drag_increment(increment, still, end)))
-            if results[-1].status in ("cancelled", "budget"):
-                return merge_results(results)
-            if _only_goes_deeper(results[-1]):
-                self._goal = self._goal_of(motion)
-                return merge_results(results)
-            if is_over(end) and (number < len(increments) or results[-1].status != "reached"):
-                return replace(merge_results(results), status="budget")
-        return merge_results([*results, (yield from self.settle_steps())])
-
-    def _drag_increment(self, increment: Motion, still: StillIncrements, end: float) -> Steps[stiv.EditResult]:
-        """Steps of one increment, until the deadline `end`."""
-        controls, goal = self.controls, self._goal
-        result = yield from self.drag_steps(increment, time_left(end) or None)
-        still.add(self.controls - controls, self._goal - goal)
-        return result
+            increments = [*split_motion(chosen_motion, path, self.assembly.positions[self._moving_vertices])]
+            is_pose = any(each.posed is not None for each in self.control_sets)
+            return (yield from apply_increments(self, increments, is_pose, self._settings.time_budget))
 
     def settle(self, **execution: Any) -> stiv.EditResult:
         """Solve again toward the last goal."""
@@ -480,7 +425,7 @@ class BlenderEdit:
             self._writer.write(self._unguarded)
             return WriteReport(True)
         with kept_twins():
-            return (yield from self._writer.write_accepted(self._goal, end))
+            return (yield from self._writer.write_accepted(self.goal, end))
 
     def take_state(self) -> TakenState | None:
         """Take the accepted state, so that the next solve can begin before it is written.
@@ -493,7 +438,7 @@ class BlenderEdit:
         session = self._solver.session
         deviations = session.deviation_test(self._writer.threads_beside)
         self._taken = TakenState(
-            session.controls, session.surface, self._goal, self._solver.trail, self.turned, deviations
+            session.controls, session.surface, self.goal, self._solver.trail, self.turned, deviations
         )
         return self._taken
 
@@ -532,37 +477,10 @@ class BlenderEdit:
         Collisions are off again if the edit began with them off.
         """
         restore_controls(self.control_sets)
-        self._goal = self._start
+        self._goal.controls = self._start
         if self._unguarded is not None or not self._began_free:
             self._unguarded = self._start
         if self._began_free:
-            self._solver.restart_from(self._start, self._goal)
+            self._solver.restart_from(self._start, self.goal)
         else:
             self._solver.discard_session()
-
-    def _motion_of(self, motion: Motion | ArrayLike) -> Motion:
-        """The motion, without its axis lock if the user lets contact leave it."""
-        chosen = Motion.of(motion)
-        return replace(chosen, free=None) if self._settings.slide_out_of_axis else chosen
-
-    def _limit(self, motion: Motion) -> Steps[None]:
-        """Steps that let the controls respond as the motion allows: its axis lock, pivot and proportional editing."""
-        limits = [each.rule.limits(motion) for each in self._made]
-        if limits != self._limits:
-            weight = self._settings.response_weight(True)
-            yield from self._solver.change_response([each.rule.limited(each, motion, weight) for each in self._made])
-            self._limits = limits
-
-    def _goal_of(self, motion: Motion) -> Floats:
-        last = split_controls(self._goal, self.control_sets)
-        return stack_controls(
-            [
-                control_set.rule.goal(control_set.controls, old, motion)
-                for control_set, old in zip(self.control_sets, last, strict=True)
-            ]
-        )
-
-
-def _only_goes_deeper(result: stiv.EditResult) -> bool:
-    """Did nothing move because overlapping objects would overlap more? Then each further increment would fail alike."""
-    return result.status == "blocked" and len(result.events) == 0 and len(result.path) == 0

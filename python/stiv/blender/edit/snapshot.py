@@ -13,7 +13,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.mirrored_controls import mirror_controls
 from stiv.blender.controls.participants import moves_surface, nothing_movable, nothing_selected
-from stiv.blender.edit.sessions import assemble_with_controls
+from stiv.blender.edit.sessions import assemble_with_controls, stack_controls
 from stiv.blender.scene.animation_curves import is_animated
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix, digest
 from stiv.blender.scene.assembly import Assembly
@@ -51,6 +51,11 @@ class EditSnapshot:
     dropped_exclusions: str
     placements: tuple[Floats, ...]
     carried: frozenset[str]
+
+    @cached_property
+    def start(self) -> Floats:
+        """The controls of all control sets, (m, 3)."""
+        return stack_controls([each.controls for each in self.control_sets])
 
     @cached_property
     def digest(self) -> str:
