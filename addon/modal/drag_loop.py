@@ -6,100 +6,32 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import Enum
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
+from .current_task import CurrentTask
+from .drag_calls import DragCalls, Goal, with_rejection
+from .drag_end import Progress, restore_after_error
 from .drag_writer import DragWriter
 from .event import Event
 from .event_handling import step
 from .pointer import Pointer
-from .repeated_solves import RepeatedSolves
+from .remaining_work import Moment, Refinement, RemainingWork
 from .request import Request
+from .solve_budget import BUDGET, MAX_BUDGET, SolveBudget
 from .state import Effect, Phase, State, same_goal
 
 if TYPE_CHECKING:
-    from ..stiv_blender import Edit, EditResult, Motion, Steps, Task
+    from ..stiv_blender import Edit, EditResult
     from ..transform import Transform
 
 FRAME = 1.0 / 60.0  # seconds that a tick waits for a solve
-BUDGET = 0.038  # seconds of a solve while the mouse moves: a frame of 24 a second, less events and headers
 FITTING = 0.75 * FRAME  # seconds of a solve and its writing that run in sequence: the state is newer then
-LONG_BUDGET = 0.12  # seconds of a solve that hands over a state: its end would lose what is not accepted yet
-HAND_OVER = 0.006  # seconds after which a solve ends with the state that it accepts next, to be shown at once
-MAX_BUDGET = 0.15  # seconds of the same if writing and drawing take longer: a solve may then take as long
-FINAL_BUDGET = 0.2  # seconds of a solve after the confirmation, which double while they are too few
 COMPARING_TIME = 5.0  # seconds that the comparison with the edit from the start may take after the confirmation
 FINISHING_TIME = 10.0  # seconds after the confirmation in which solves that meet obstacles may come closer
 PAUSE_TIME = 2 * FRAME  # seconds without a motion after which a state is tested completely
 REST_TIME = 0.2  # seconds without a motion after which a drag settles, so that its confirmation need not
 START_WAIT = 0.15  # seconds that a job of a start may take before the view is redrawn, which takes longer if large
-
-
-class Progress(Enum):
-    """The status of a drag after an event."""
-
-    STARTING = "starting"
-    RUNNING = "running"
-    FINISHING = "finishing"
-    """Confirmed: the goal is solved for to the end, until Esc stops it."""
-    FINISHED = "finished"
-    CANCELLED = "cancelled"
-
-    @property
-    def ended(self) -> bool:
-        """Whether the drag takes no more events."""
-        return self in (Progress.FINISHED, Progress.CANCELLED)
-
-
-class Refinement(Enum):
-    """The next work on a solved drag, while the mouse rests or after the confirmation."""
-
-    SETTLING = "settling"
-    CONFIRMING = "confirming"
-    """A comparison with the edit from the start, which no solve within a budget makes."""
-    NONE = "none"
-
-
-@dataclass(frozen=True)
-class Goal:
-    """The goal of a solve: a state, its transform, and the motion that an edit takes."""
-
-    state: State
-    transform: Transform
-    motion: Motion
-
-
-@dataclass(frozen=True)
-class DragCalls:
-    """The calls of a drag.
-
-    Attributes:
-        begin: steps that begin an edit of the current scene; called again when the state requests another one.
-        transform_of: the transform that a state requests.
-        motion_of: the motion that an edit takes for a transform and a state.
-        apply: steps of an edit that applies typed values as a script would, from the start.
-        task: makes a task of steps.
-
-    """
-
-    begin: Callable[[Request], Steps[Edit]]
-    transform_of: Callable[[State], Transform]
-    motion_of: Callable[[Transform, State], Motion]
-    apply: Callable[[Transform, State], Steps[tuple[Edit, EditResult]]]
-    task: Callable[[Steps[Any]], Task[Any]]
-
-
-class DragEnded(RuntimeError):  # noqa: N818 (it is not an error)
-    """An event outside the drag ended it."""
-
-
-def restore_after_error(edit: Edit, error: Exception) -> None:
-    """Restore the start; if that fails too because the scene is gone, `error` gets a note."""
-    try:
-        edit.restore()
-    except Exception as second:
-        error.add_note(f"while restoring: {second}")
 
 
 class DragLoop:
@@ -109,8 +41,8 @@ class DragLoop:
     start and each solve are tasks, whose jobs run beside Blender: a tick waits for a job no longer than a frame, and
     the next tick continues. While an accepted state is written, evaluated and tested, the next solve already runs.
     While the mouse rests, budgets grow and the drag settles; the next motion cancels that. If the budget of a solve
-    ends before a state is accepted, the next solve continues with the
-    same goal: with a new goal each time, none would be reached.
+    ends before a state is accepted, the next solve continues with the same goal: with a new goal each time, none would
+    be reached.
 
     No exception leaves this class after the start. A rejected value (ValueError) becomes `note`, and the last accepted
     state stays until the user types on. Any other exception restores the scene, ends the drag and becomes `error`.
@@ -134,38 +66,36 @@ class DragLoop:
         self.edit: Edit | None = None
         self.stopped = False  # Esc ended the solve after the confirmation
         self._calls = calls
+        self._task = CurrentTask(calls.task)
+        self._work = RemainingWork()
+        self._budget = SolveBudget()
         self._begun = state.request
-        self._pending = False
         self._confirmed, self._confirmed_at = False, math.inf
-        self._unfinished: Goal | None = None
-        self._refinement = Refinement.SETTLING
         self._refusal = ""
         self._solves = 0
-        self._repeated = RepeatedSolves()
         self._aimed_at: State | None = None  # state of the last goal
-        self._can_cancel = False  # the task refines a state that is accepted, until the next motion
         self._moved_at = 0.0
         self._applies = False  # confirmed with typed values
         self._returned_at = math.inf  # when the last tick gave the interface its turn
-        self._run(calls.begin(state.request), self._take_first_edit)
+        self._task.run(calls.begin(state.request), self._take_first_edit)
         began = time.perf_counter()
-        starts_job = not self._advance_task(0.0)  # reads the scene, which takes about as long as writing and drawing it
+        starts_job = not self._task.advance(0.0)  # reads the scene, which takes about as long as writing and drawing it
         self.writer.seconds = time.perf_counter() - began
-        self._limit_budget(self.writer.seconds)
+        self._budget.take_shown_in(self.writer.seconds)
         if starts_job:
-            self._advance_task(START_WAIT)
+            self._task.advance(START_WAIT)
 
     @property
     def at_rest(self) -> bool:
         """Whether nothing is left to solve until the next event."""
         writes = self.writer.is_due or self.writer.is_incomplete
-        unfinished = self._pending or writes or self._task is not None
+        unfinished = self._work.pending or writes or self._task.runs
         return self.progress.ended or not unfinished
 
     @property
     def shows_soon(self) -> bool:
         """Whether the first solves for a goal accepted nothing, and others follow: showing each would draw the view."""
-        return self._repeated.are_hidden and not self.at_rest
+        return self._work.repeated.are_hidden and not self.at_rest
 
     @property
     def fraction(self) -> float:
@@ -175,7 +105,7 @@ class DragLoop:
         """
         if self._confirmed and self.edit is not None and not self._applies:
             return min(self.seconds_confirmed / FINISHING_TIME, 1.0)
-        return self._task.progress.fraction if self._task is not None else 1.0
+        return self._task.fraction
 
     @property
     def seconds_confirmed(self) -> float:
@@ -222,17 +152,13 @@ class DragLoop:
     def _guarded(self, action: Callable[[], None]) -> Progress:
         drawn_in = self.writer.drawn_in()
         if drawn_in is not None:
-            self._limit_budget(drawn_in)
+            self._budget.take_shown_in(drawn_in)
         if not self.progress.ended:
             try:
                 action()
             except Exception as error:  # a modal operator must end, whatever went wrong
                 self._fail(error)
         return self.progress
-
-    def _limit_budget(self, shown_in: float) -> None:
-        """Let the next solve take as long as a state takes to be shown, in seconds."""
-        self._budget = min(max(BUDGET, shown_in), MAX_BUDGET)
 
     def _carry_out(self, event: Event) -> Effect:
         self.state, effect = step(self.state, event)
@@ -251,19 +177,19 @@ class DragLoop:
 
     def _note_motion(self) -> None:
         """Solve for a new goal, without what rest was used for."""
-        self._pending, self._refinement = True, Refinement.SETTLING
-        self._repeated.begin()
+        self._work.begin()
         self._moved_at = time.perf_counter()
-        if self._task is not None and self._can_cancel:
+        if self._task.can_cancel:
             self._task.cancel()
 
     def _advance(self) -> None:
-        self._end_slow_task()
+        if self._confirmed:
+            self._task.cancel_slow()
         end, solves = time.perf_counter() + self._wait, self._solves
-        while solves == self._solves and (self._task is not None or self._begin_work()):
-            if not self._advance_task(max(0.0, end - time.perf_counter())):
+        while solves == self._solves and (self._task.runs or self._begin_work()):
+            if not self._task.advance(max(0.0, end - time.perf_counter())):
                 return
-        if self.writer.is_incomplete and not self._pending and self._task is None and not self._moves(PAUSE_TIME):
+        if self.writer.is_incomplete and not self._work.pending and not self._task.runs and not self._moves(PAUSE_TIME):
             self.writer.is_due = True
         if self.writer.is_due and not self._solves_on():
             self._write(is_new=solves < self._solves)
@@ -274,67 +200,39 @@ class DragLoop:
         """Finish. If no state was accepted, write the start: an operator without a report would solve again."""
         if self.result is not None and self.writer.report is None and self.writer.written is None:
             self._write(is_new=False)
-            if self._task is not None:  # it writes in steps, and this is called again
+            if self._task.runs:  # it writes in steps, and this is called again
                 return
         self.progress = Progress.FINISHED
 
     def _solves_on(self) -> bool:
         """Whether a confirmed drag is not at its end: drawing each state on the way would take longer than solving."""
-        return self._confirmed and (self._pending or self._task is not None or self._needs_refinement)
+        return self._confirmed and (self._work.pending or self._task.runs or self._needs_refinement)
 
     @property
     def _needs_refinement(self) -> bool:
-        return self.result is not None and self._refinement is not Refinement.NONE
-
-    def _run(
-        self, steps: Steps[Any], take: Callable[[Any], None], can_cancel: bool = False, limit: float = math.inf
-    ) -> None:
-        """Run a task; limit: seconds after the confirmation in which it must end."""
-        self._task: Task[Any] | None = self._calls.task(steps)
-        self._take, self._can_cancel, self._limit = take, can_cancel, limit
-        self._waited_since = time.perf_counter()
-
-    def _end_slow_task(self) -> None:
-        """After the confirmation, cancel a task that takes longer than its limit. The accepted state stays."""
-        if self._confirmed and self._task is not None and time.perf_counter() - self._waited_since > self._limit:
-            self._task.cancel()
-
-    def _advance_task(self, seconds: float) -> bool:
-        """Continue the task for some seconds; returns whether it is done, and its result taken."""
-        assert self._task is not None
-        try:
-            if not self._task.advance(seconds):
-                return False
-        except BaseException:
-            self._task = None
-            raise
-        result, self._task = self._task.result, None
-        self._take(result)
-        return True
+        return self.result is not None and self._work.refinement is not Refinement.NONE
 
     def _leave_task(self) -> None:
         """End a task without its result. A session is free afterwards; the start need not be waited for."""
-        if self._task is not None:
-            (self._task.abandon if self.edit is None else self._task.close)()
-        self._task = None
+        self._task.leave(waits=self.edit is not None)
 
     def _begin_work(self) -> bool:
         """Begin the next task, if any: another edit, a solve, or settling after the confirmation."""
-        if self._pending:
+        if self._work.pending:
             if not self._begin_again():
                 self._begin_solve()
         elif self._needs_refinement and (self._confirmed or self._rests()):
             self._begin_refinement()
-        return self._task is not None
+        return self._task.runs
 
     def _begin_refinement(self) -> None:
         assert self.edit is not None
-        if self._refinement is Refinement.SETTLING:
-            self._refinement = Refinement.CONFIRMING
-            self._run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
+        if self._work.refinement is Refinement.SETTLING:
+            self._work.refinement = Refinement.CONFIRMING
+            self._task.run(self.edit.settle_steps(), self._take_settled, can_cancel=not self._confirmed)
         else:
-            self._refinement = Refinement.NONE
-            self._run(self.edit.confirm_steps(), self._take_confirmed, not self._confirmed, COMPARING_TIME)
+            self._work.refinement = Refinement.NONE
+            self._task.run(self.edit.confirm_steps(), self._take_confirmed, not self._confirmed, COMPARING_TIME)
 
     def _rests(self) -> bool:
         """Whether the mouse has not moved for a while, and surfaces collide."""
@@ -346,22 +244,22 @@ class DragLoop:
 
     def _begin_solve(self) -> None:
         assert self.edit is not None
-        self._pending = False
+        work = self._work
+        work.pending = False
         try:
-            goal = self._unfinished or self._new_goal()
+            goal = work.unfinished or self._calls.goal(self.state)
         except ValueError as error:
             self.note = str(error)
             return
         self._aimed_at = goal.state
-        is_new = self._unfinished is None
-        self._unfinished = None
-        doublings = self._repeated.doublings(is_new or self._confirmed)
-        hand_over = None if self._confirmed or self._rests() else max(HAND_OVER, self.writer.seconds / 2)
-        budget = FINAL_BUDGET if self._confirmed else self._budget
-        budget = (budget if hand_over is None else max(budget, LONG_BUDGET)) * 2**doublings
+        is_new = work.unfinished is None
+        work.unfinished = None
+        hands_over = not self._confirmed and not self._rests()
+        budget, hand_over = self._budget.of_solve(hands_over, self._confirmed, self.writer.seconds)
+        budget *= 2 ** work.repeated.doublings(is_new or self._confirmed)
         steps = self.edit.drag_steps(goal.motion, time_budget=budget, hand_over=hand_over)
-        can_cancel = is_new and self._repeated.fruitless > 0 and not self._confirmed
-        self._run(_noting(steps), lambda found: self._take_solved(goal, found), can_cancel)
+        can_cancel = is_new and work.repeated.fruitless > 0 and not self._confirmed
+        self._task.run(with_rejection(steps), lambda found: self._take_solved(goal, found), can_cancel)
 
     def _take_first_edit(self, edit: Edit) -> None:
         self.edit = edit
@@ -378,37 +276,28 @@ class DragLoop:
             return
         self.result, self.transform, self.note = found, goal.transform, self._refusal
         self._refusal = ""
+        self.writer.is_due |= self._has_to_show(found)
+        if self._work.take_solved(goal, found, self._moment()):
+            self._call_corrected()
+
+    def _has_to_show(self, found: EditResult) -> bool:
+        """Whether a solve accepted a state, or ended without one before any was written."""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
-        may_gain = self._repeated.may_gain(goal.state, found, self._confirmed, self._rests())
-        is_late = self._is_late(found)
-        is_current = same_goal(goal.state, self.state)
-        self._pending = not self.stopped and ((may_gain and not is_late) or not is_current)
-        continues = is_current or not self._confirmed  # a solve of an earlier goal may run at the confirmation
-        self._unfinished = goal if nothing_accepted and continues else None
-        self.writer.is_due |= len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
-        if self._pending:
-            return
-        if found.status == "reached":
-            self._refinement = Refinement.NONE
-        elif is_late:
-            self._end_late()
-        elif self._repeated.is_poor or (found.status == "blocked" and self._repeated.fruitless > 0):
-            self._end_settling()
+        return len(found.path) > 0 or (self.writer.report is None and not nothing_accepted)
+
+    def _moment(self) -> Moment:
+        is_late = self.seconds_confirmed > FINISHING_TIME
+        return Moment(self.state, self._confirmed, self._rests(), self.stopped, is_late)
 
     def _take_settled(self, settled: EditResult) -> None:
-        """Take a settled state. A solve that used up its budget continues where it was, until it gains no more."""
+        """Take a settled state."""
         if self._is_cancelled(settled):
             return
         self._solves += 1
         if settled.path or settled.status not in ("unchanged", "cancelled", "budget"):
             self.result, self.writer.is_due = settled, True
-        if settled.status != "budget" or self.stopped:
-            return
-        self._refinement = Refinement.SETTLING
-        if self._is_late(settled):
-            self._end_late()
-        elif not self._repeated.may_settle(settled, self._confirmed or self._rests()):
-            self._end_settling()
+        if self._work.take_settled(settled, self._moment()):
+            self._call_corrected()
 
     def _take_confirmed(self, confirmed: EditResult) -> None:
         """Take another state, if it is better. Otherwise the result before has the contacts of the shown state."""
@@ -418,29 +307,14 @@ class DragLoop:
         if confirmed.path:
             self.result, self.writer.is_due = confirmed, True
 
-    def _end_settling(self) -> None:
-        """End the solves, of which the last ones gained little."""
-        self._refinement = Refinement.CONFIRMING
+    def _call_corrected(self) -> None:
+        """End the solves for the goal, of which the last ones gained little: the state is as close as they come."""
         if self.result is not None and self.result.status == "budget" and self.result.path:
             self.result = replace(self.result, status="corrected")
 
-    def _is_late(self, found: EditResult) -> bool:
-        """Whether to keep what the user sees, which obstacles hold. A free motion ends at its goal, however late."""
-        meets_obstacles = len(found.events) > 0 or found.counters.get("events", 0) > 0
-        return self.seconds_confirmed > FINISHING_TIME and meets_obstacles
-
-    def _end_late(self) -> None:
-        """End the solves without a comparison."""
-        self._end_settling()
-        self._refinement = Refinement.NONE
-
     def _is_cancelled(self, found: EditResult | ValueError) -> bool:
         """Whether a motion cancelled the solve, whose goal is no longer wanted."""
-        return self._can_cancel and self._pending and getattr(found, "status", "") == "cancelled"
-
-    def _new_goal(self) -> Goal:
-        transform = self._calls.transform_of(self.state)
-        return Goal(self.state, transform, self._calls.motion_of(transform, self.state))
+        return self._task.can_cancel and self._work.pending and getattr(found, "status", "") == "cancelled"
 
     def _begin_again(self) -> bool:
         """Begin another edit if the state requests one; returns whether its task has begun.
@@ -450,13 +324,13 @@ class DragLoop:
         request = self.state.request
         if request == self._begun:
             return False
-        self._unfinished = None
+        self._work.unfinished = None
         if request == replace(self._begun, interference=request.interference):
             self._switch_interference()
             return False
         assert self.edit is not None
         self.edit.restore()
-        self._run(_noting(self._calls.begin(request)), lambda found: self._take_edit(request, found))
+        self._task.run(with_rejection(self._calls.begin(request)), lambda found: self._take_edit(request, found))
         return True
 
     def _take_edit(self, request: Request, found: Edit | ValueError) -> None:
@@ -477,12 +351,10 @@ class DragLoop:
         if self.state.typed.active and not self._accept_typed():
             return
         self._confirmed = True
-        self._confirmed_at = self._waited_since = time.perf_counter()
-        self._unfinished = None  # the goal is the position where the mouse was released
-        if self.result is not None and self.result.status == "budget":
-            self._pending = True
-            self._repeated.begin_confirmed()
-        if self.edit is not None or self._refinement is Refinement.NONE:
+        self._confirmed_at = time.perf_counter()
+        self._task.wait_from_now()
+        self._work.confirm(self.result)
+        if self.edit is not None or self._work.refinement is Refinement.NONE:
             self.progress = Progress.FINISHING
             self._finish_at_once()
 
@@ -491,7 +363,7 @@ class DragLoop:
         end = time.perf_counter() + BUDGET
         while self.progress is Progress.FINISHING and time.perf_counter() < end:
             self._advance()
-            if self._task is not None:  # its job takes longer
+            if self._task.runs:  # its job takes longer
                 return
 
     def _accept_typed(self) -> bool:
@@ -505,10 +377,10 @@ class DragLoop:
         self._leave_task()
         if self.edit is not None:
             self.edit.restore()
-        self._pending = self.writer.is_due = False
-        self._refinement = Refinement.NONE  # by the steps
+        self.writer.is_due = False
+        self._work.stop()  # the steps refine
         self.result, self._applies = None, True
-        self._run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
+        self._task.run(self._calls.apply(transform, self.state), lambda found: self._take_applied(transform, *found))
         return True
 
     def _take_applied(self, transform: Transform, edit: Edit, result: EditResult) -> None:
@@ -516,9 +388,9 @@ class DragLoop:
 
     def _stop(self) -> None:
         """Keep the last accepted state."""
-        self.stopped, self._pending, self._refinement = True, False, Refinement.NONE
-        if self._task is not None:
-            self._task.cancel()
+        self.stopped = True
+        self._work.stop()
+        self._task.cancel()
 
     def _write(self, is_new: bool) -> None:
         """Write the accepted state: a new one without its complete test while the mouse moves.
@@ -533,8 +405,8 @@ class DragLoop:
                     return
                 self._end_solve()
             if self._confirmed:
-                self._run(self.writer.write_steps(self.edit, self.result), self._take_written)
-                self._advance_task(FRAME)
+                self._task.run(self.writer.write_steps(self.edit, self.result), self._take_written)
+                self._task.advance(FRAME)
                 return
             self.result = self.writer.write(self.edit, self.result)
 
@@ -545,20 +417,16 @@ class DragLoop:
         """Start the solve for a new goal, if there is one that takes too long for the same frame."""
         solved = self.result.timings["total"] if self.result is not None else 0.0
         is_new = not same_goal(self._aimed_at, self.state)  # a repeated solve may find nothing to show
-        continues = self._pending and self.state.request == self._begun
+        continues = self._work.pending and self.state.request == self._begun
         if continues and is_new and solved + self.writer.seconds > FITTING:
             self._begin_solve()
-            if self._task is not None:
-                self._task.start()
+            self._task.start()
 
     def _end_solve(self) -> None:
         """Cancel a solve and wait for its end, which takes milliseconds; its goal is solved for again."""
-        if self._task is None:
-            return
-        self._pending = self._can_cancel = True
-        self._task.cancel()
-        while not self._advance_task(FRAME):
-            pass
+        if self._task.runs:
+            self._work.pending = self._task.can_cancel = True
+            self._task.end(FRAME)
 
     def _fail(self, error: Exception) -> None:
         self.error = None if self.stopped else error
@@ -566,11 +434,3 @@ class DragLoop:
         self._leave_task()
         if self.edit is not None:
             restore_after_error(self.edit, error)
-
-
-def _noting(steps: Steps[Any]) -> Steps[Any]:
-    """Steps whose result may be the ValueError that ended them."""
-    try:
-        return (yield from steps)
-    except ValueError as error:
-        return error

@@ -11,7 +11,7 @@ import bpy
 
 from .. import stiv_blender
 from ..intersection_texts import LENGTH, as_message, as_messages, brief, short_name
-from ..modal.drag_loop import DragEnded, restore_after_error
+from ..modal.drag_end import DragEnded, restore_after_error
 from ..modal.header_texts import naming, result_text
 from ..translations import errors, translate, translate_error
 from ..units import length_text

@@ -54,7 +54,7 @@ class ScriptedDrag:
     ) -> ScriptedDrag:
         """A drag of a kind; `modal` are the modules of the add-on by their names."""
         state = modal["state"].State(modal["pointer"].Pointer.at((0.0, 0.0)), modal["request"].Request(kind))
-        calls = modal["drag_loop"].DragCalls(
+        calls = modal["drag_calls"].DragCalls(
             begin=lambda request: begin(),
             transform_of=lambda state: state.pointer.effective[0] / PIXELS,
             motion_of=lambda where, state: goal_of(where),
@@ -121,7 +121,7 @@ def _no_typed_values(where: float, state: Any) -> Any:
 def _modal(path: Path) -> dict[str, ModuleType]:
     return {
         name: require_blender(f"stiv_addon.modal.{name}", path)
-        for name in ("drag_loop", "event", "pointer", "request", "state")
+        for name in ("drag_calls", "drag_loop", "event", "pointer", "request", "state")
     }
 
 

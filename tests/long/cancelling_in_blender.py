@@ -30,7 +30,9 @@ from ball_above_wall import ball_above_wall  # noqa: E402
 
 from stiv.blender import BlenderEdit, EditSettings  # noqa: E402
 from stiv.task import Task  # noqa: E402
-from stiv_addon.modal.drag_loop import DragCalls, DragLoop, Progress  # noqa: E402
+from stiv_addon.modal.drag_calls import DragCalls  # noqa: E402
+from stiv_addon.modal.drag_end import Progress  # noqa: E402
+from stiv_addon.modal.drag_loop import DragLoop  # noqa: E402
 from stiv_addon.modal.event import Event  # noqa: E402
 from stiv_addon.modal.pointer import Pointer  # noqa: E402
 from stiv_addon.modal.request import Request  # noqa: E402

@@ -13,7 +13,9 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
 from ...modal.axis_lock import AxisLock
-from ...modal.drag_loop import DragCalls, DragEnded, DragLoop, Progress
+from ...modal.drag_calls import DragCalls
+from ...modal.drag_end import DragEnded, Progress
+from ...modal.drag_loop import DragLoop
 from ...modal.header_texts import turned_text
 from ...modal.pointer import Pointer
 from ...modal.request import Request

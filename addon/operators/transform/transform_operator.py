@@ -11,7 +11,7 @@ import bpy
 
 from ... import stiv_blender
 from ...intersection_texts import as_message, brief
-from ...modal.drag_loop import restore_after_error
+from ...modal.drag_end import restore_after_error
 from ...modal.request import Request
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings

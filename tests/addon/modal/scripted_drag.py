@@ -6,7 +6,8 @@ from unittest.mock import patch
 from fake_edit import FakeEdit, FakeTask
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import DragCalls, DragLoop
+from stiv_addon.modal.drag_calls import DragCalls
+from stiv_addon.modal.drag_loop import DragLoop
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.expression import evaluate
 from stiv_addon.modal.pointer import Pointer

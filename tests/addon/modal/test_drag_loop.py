@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from scripted_drag import follow, move_to, new_drag, pause
 from test_event_handling import EVENTS
 
-from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import DragLoop, Progress
+from stiv_addon.modal import drag_loop, solve_budget
+from stiv_addon.modal.current_task import CurrentTask
+from stiv_addon.modal.drag_end import Progress
 from stiv_addon.modal.event import Event
 from stiv_addon.modal.pointer import Pointer
 from stiv_addon.modal.repeated_solves import MAX_FRUITLESS, MAX_HIDDEN, MAX_IDLE, MAX_SLOW
@@ -142,7 +143,7 @@ def test_solves_hand_over_early_only_until_the_mouse_rests(monkeypatch: pytest.M
     drag.tick()
     drag.handle(Event("LEFTMOUSE"))
     first, *later = edit.hand_overs
-    assert first == drag_loop.HAND_OVER and later and set(later) == {None}
+    assert first == solve_budget.HAND_OVER and later and set(later) == {None}
 
 
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
@@ -415,12 +416,12 @@ def test_a_tick_after_the_confirmation_waits_as_long_as_blender_took_between_tic
     if confirmed:
         drag.handle(Event("LEFTMOUSE"))
     waits: list[float] = []
-    monkeypatch.setattr(DragLoop, "_advance_task", lambda drag, seconds: waits.append(seconds))
+    monkeypatch.setattr(CurrentTask, "advance", lambda task, seconds: waits.append(seconds))
     for between in (0.0, 0.06, 0.3):
         drag.tick()
         time.sleep(between)
     drag.tick()
-    expected = [drag_loop.FRAME, drag_loop.FRAME, 0.06, drag_loop.MAX_BUDGET] if confirmed else [drag_loop.FRAME] * 4
+    expected = [drag_loop.FRAME, drag_loop.FRAME, 0.06, solve_budget.MAX_BUDGET] if confirmed else [drag_loop.FRAME] * 4
     assert waits == pytest.approx(expected, abs=0.01)
 
 
@@ -498,7 +499,7 @@ def test_a_solve_may_take_as_long_as_reading_or_as_writing_and_drawing_up_to_a_l
         drag.handle(move_to(x))
         drag.tick()
     first, second, _, last = edit.budgets
-    assert drag_loop.BUDGET < 0.06 <= first and second >= 0.08 and last == drag_loop.MAX_BUDGET
+    assert solve_budget.BUDGET < 0.06 <= first and second >= 0.08 and last == solve_budget.MAX_BUDGET
 
 
 def test_an_endless_solve_can_be_confirmed() -> None:

@@ -4,7 +4,7 @@ from fake_edit import FakeEdit
 from scripted_drag import follow, move_to, new_drag, pause
 
 from stiv_addon.modal import drag_loop
-from stiv_addon.modal.drag_loop import Progress
+from stiv_addon.modal.drag_end import Progress
 from stiv_addon.modal.drag_writer import MAX_REJECTED
 from stiv_addon.modal.event import Event
 
