@@ -14,6 +14,7 @@ from stiv.blender.layout.layout_edit import GROUND, LayoutEdit
 from stiv.blender.layout.layout_task import LayoutReport, LayoutTask, Watch, run
 from stiv.blender.layout.parting import part
 from stiv.blender.layout.resting import Rest, rest
+from stiv.blender.layout.rigid_contacts import find_intersected, find_nearest
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.settings import EditSettings
 from stiv.task import Steps
@@ -119,12 +120,12 @@ class SettleIntoContact(LayoutTask):
     def _settle(self, mover: int, watch: Watch) -> Steps[Rest]:
         scene, start = self._edit.scene, self._edit.scene.pose(mover)
         limit = self._settings.max_distance or scene.size(mover)
-        if scene.intersected(mover) and (yield from part(scene, mover, watch)) is None:
+        if find_intersected(scene, mover) and (yield from part(scene, mover, watch)) is None:
             return Rest("nothing")
         if self._settings.direction is not None:
             direction = unit_vector(self._settings.direction)
         else:
-            near = scene.nearest(mover)
+            near = find_nearest(scene, mover)
             if near is None or np.linalg.norm(near[0]) > limit:
                 scene.set_pose(mover, start)
                 return Rest("nothing")
@@ -151,7 +152,7 @@ def check_start(edit: LayoutEdit, watch: Watch) -> Steps[None]:
     """Steps that raise InputError naming the first mover that intersects something."""
     for number in range(len(edit.control_sets)):
         yield from watch.check()
-        other = edit.scene.intersected(number)
+        other = find_intersected(edit.scene, number)
         if other and other != GROUND:
             raise InputError(f"{edit.scene.movers[number].name}: intersects {other}; use Push Apart")
 

@@ -17,6 +17,7 @@ from stiv.blender.layout.containment import is_closed, winding_numbers
 from stiv.blender.layout.layout_edit import LayoutEdit
 from stiv.blender.layout.layout_task import LayoutReport, LayoutTask, Watch, run
 from stiv.blender.layout.resting import fall
+from stiv.blender.layout.rigid_contacts import is_clear
 from stiv.blender.layout.rigid_scene import RigidScene
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.settings import EditSettings
@@ -212,7 +213,7 @@ def _pack_one(
         if expected >= lowest:
             break
         scene.set_pose(mover, pose)
-        if not scene.is_clear(mover) or not (yield from _is_inside(scene, mover, container, falling=True)):
+        if not is_clear(scene, mover) or not (yield from _is_inside(scene, mover, container, falling=True)):
             continue
         if (yield from fall(scene, mover, DOWN)) is None or not (yield from _is_inside(scene, mover, container)):
             continue

@@ -10,6 +10,7 @@ import numpy as np
 
 from stiv.blender.layout.containment import is_mostly_inside, is_outside
 from stiv.blender.layout.layout_task import Watch
+from stiv.blender.layout.rigid_contacts import contact_normals, is_clear, travel
 from stiv.blender.layout.rigid_scene import SURPLUS, RigidScene
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.task import Steps
@@ -25,7 +26,7 @@ def part(scene: RigidScene, mover: int, watch: Watch, among: Flags | None = None
 
     among: see `RigidScene.facing`.
     """
-    if scene.is_clear(mover, among):
+    if is_clear(scene, mover, among):
         return np.zeros(3)
     pose = scene.pose(mover)
     inside = yield from is_mostly_inside(scene, mover, among)
@@ -68,7 +69,7 @@ def find_near_pairs(scene: RigidScene, movers: Sequence[int], watch: Watch) -> S
     pairs = []
     for a, b, among in [*tested, *((a, -1, others) for a in movers)]:
         yield from watch.check()
-        if not scene.is_clear(a, among):
+        if not is_clear(scene, a, among):
             pairs.append((a, b))
     return pairs
 
@@ -147,16 +148,16 @@ class _Search:
         return np.geomspace(min(2 * self._scene.separation, longest), longest, SAMPLES)
 
     def _is_clear(self) -> Steps[bool]:
-        if not self._scene.is_clear(self._mover, self._among):
+        if not is_clear(self._scene, self._mover, self._among):
             return False
         return self._may_stay_inside or (yield from is_outside(self._scene, self._mover, self._among))
 
     def _shorten(self, direction: Floats, distance: float) -> Steps[None]:
         """Steps that travel back from a clear place as far as the minimum distance allows."""
-        fraction = yield from self._scene.travel(self._mover, -distance * direction, self._among)
+        fraction = yield from travel(self._scene, self._mover, -distance * direction, self._among)
         kept = distance * (1 - (1.0 if fraction is None else fraction)) + SURPLUS * self._scene.separation
         self._place(kept * direction)
-        if not self._scene.is_clear(self._mover, self._among):
+        if not is_clear(self._scene, self._mover, self._among):
             kept = distance
         if self.best is None or kept < np.linalg.norm(self.best):
             self.best = kept * direction
@@ -177,7 +178,7 @@ def _directions(scene: RigidScene, mover: int, among: Flags | None) -> list[Floa
     grid = [np.array(each, np.float64) for each in product((0, 1, -1), repeat=3) if any(each)]
     grid.sort(key=lambda each: (np.abs(each).sum(), each.tolist() != [0, 0, 1]))
     found = [each / np.linalg.norm(each) for each in grid]
-    normals = scene.normals_of_contact(mover, among)
+    normals = contact_normals(scene, mover, among)
     _, first = np.unique(np.round(normals, 3), axis=0, return_index=True)
     kept = normals[np.sort(first)]
     kept = kept[:: max(1, len(kept) // MAX_NORMALS)]

@@ -17,6 +17,7 @@ from stiv.blender.layout.containment import is_outside
 from stiv.blender.layout.layout_edit import LayoutEdit
 from stiv.blender.layout.layout_task import LayoutReport, LayoutTask, Watch, run
 from stiv.blender.layout.resting import fall
+from stiv.blender.layout.rigid_contacts import is_clear
 from stiv.blender.layout.rigid_scene import RigidScene
 from stiv.blender.scene.arrays import Floats, as_matrix
 from stiv.blender.settings import EditSettings
@@ -101,12 +102,12 @@ class Place(LayoutTask):
             if float(normal @ up) < 0.2:  # a wall or a ceiling
                 continue
             self._stand(scene, copy, point, up, spin, size)
-            if not scene.is_clear(copy) or (yield from fall(scene, copy, -up, 2 * size)) is None:
+            if not is_clear(scene, copy) or (yield from fall(scene, copy, -up, 2 * size)) is None:
                 continue
             height = float(((scene.positions_of(copy) - point) @ up).min())
             if not -HIGHEST * size < height < HIGHEST * size or not (yield from is_outside(scene, copy)):
                 continue
-            if scene.is_clear(copy):
+            if is_clear(scene, copy):
                 return True
         return False
 

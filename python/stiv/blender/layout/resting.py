@@ -10,7 +10,8 @@ import numpy as np
 import stiv
 from stiv.blender.controls.rotations import rotation_matrix, rotation_vector
 from stiv.blender.layout.layout_task import Stopped, Watch
-from stiv.blender.layout.rigid_scene import SURPLUS, Contact, RigidScene
+from stiv.blender.layout.rigid_contacts import Contact, find_contacts, is_clear, travel
+from stiv.blender.layout.rigid_scene import SURPLUS, RigidScene
 from stiv.blender.scene.arrays import Floats
 from stiv.task import Call, Steps
 
@@ -49,7 +50,7 @@ def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.in
     corners, box = scene.extent(), scene.box(mover)
     far = float(np.abs(corners - box[::-1]).max(axis=0) @ np.abs(direction)) + scene.size(mover)
     far = min(far, length)
-    fraction = yield from scene.travel(mover, far * direction)
+    fraction = yield from travel(scene, mover, far * direction)
     if fraction is None:
         return None
     distance = max(0.0, fraction * far - SURPLUS * scene.separation)
@@ -81,12 +82,12 @@ def rest(
             if not (yield from _leave_balance(scene, mover, direction, number, watch, length)):
                 break
     distance = float((scene.pose(mover) - start)[0] @ direction)
-    return Rest("rests", tuple(scene.contacts(mover, direction, SUPPORT)), distance)
+    return Rest("rests", tuple(find_contacts(scene, mover, direction, SUPPORT)), distance)
 
 
 def is_supported(scene: RigidScene, mover: int, direction: Floats, reach: float = SUPPORT) -> bool:
     """Is the center of a mover above the inside of the polygon of its contacts, seen along the direction?"""
-    contacts = [each.point for each in scene.contacts(mover, direction, reach)]
+    contacts = [each.point for each in find_contacts(scene, mover, direction, reach)]
     if len(contacts) < 3:
         return False
     across = _plane_across(direction)
@@ -129,7 +130,7 @@ def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, leng
             session = None
             step /= 4
     lifted = -REACH * scene.separation * direction  # the session may have come nearer than the minimum distance
-    if (yield from scene.travel(mover, lifted)) is not None:
+    if (yield from travel(scene, mover, lifted)) is not None:
         scene.set_pose(mover, start)
         return True
     scene.shift(mover, lifted)
@@ -142,7 +143,7 @@ def _tumble(scene: RigidScene, mover: int, direction: Floats, watch: Watch, leng
 
 def _level(scene: RigidScene, mover: int, direction: Floats) -> Steps[bool]:
     """Steps that bring all contacts near the minimum distance to it, by one linear step; False if that sank nothing."""
-    before, contacts = scene.pose(mover), scene.contacts(mover, direction, REACH)
+    before, contacts = scene.pose(mover), find_contacts(scene, mover, direction, REACH)
     rows = {tuple(np.round(each.point / scene.separation).tolist()): each for each in contacts}
     chosen = list(rows.values())[:MAX_ROWS]
     arms = np.array([each.point for each in chosen]).reshape(-1, 3) - before[0]
@@ -157,7 +158,7 @@ def _level(scene: RigidScene, mover: int, direction: Floats) -> Steps[bool]:
     scene.set_pose(mover, pose)
     lifted = -REACH * scene.separation * direction  # to be lowered to the exact stop
     scene.shift(mover, lifted)
-    if scene.is_clear(mover):
+    if is_clear(scene, mover):
         stop = yield from fall(scene, mover, direction, 3 * REACH * scene.separation)
         if stop is not None and float((scene.pose(mover) - before)[0] @ direction) > 1e-3 * scene.separation:
             return True
@@ -192,7 +193,7 @@ def _leave_balance(
     pose[1] = turned(pose[1], NUDGE * axis)
     scene.set_pose(mover, pose)
     if (
-        scene.is_clear(mover)
+        is_clear(scene, mover)
         and (yield from fall(scene, mover, direction, length)) is not None
         and (yield from _tumble(scene, mover, direction, watch, length))
         and float((scene.pose(mover) - before)[0] @ direction) > scene.separation

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rigid bodies among obstacles: how far one can travel, the obstacles near it, and its contacts. Without Blender."""
+"""Rigid bodies among obstacles: their poses, and the obstacles near one. Without Blender."""
 
 from __future__ import annotations
 
@@ -16,15 +16,9 @@ from stiv.task import Call, Steps
 
 AUTOMATIC_FRACTION = 1e-4  # of the diagonal of the movers, as in the core
 SURPLUS = 1e-4  # of the separation, kept beside it, because Blender stores places in single precision
-STRIDE = 0.25  # of its size, that a body travels between two searches for obstacles
-SHORTEST_STRIDE = 1e-3  # of the whole way, for bodies without a size
-DRIFT = 1e-4  # of a distance below the separation, that a search after the first may lose to rounding
-TOLERANCE = 0.02  # of the separation; a body that starts this much nearer may stay
 
 Elements = list[Indices]
 """Chosen triangles, loose edges and loose vertices of a surface, ascending."""
-
-HERE = np.zeros((2, 3))
 
 
 @dataclass(frozen=True)
@@ -57,26 +51,21 @@ class Facing:
     Attributes:
         surface: the rigid body first, then the obstacles as one fixed body.
         rows: their vertices in the surface of the scene, (m,); the first `count` are those of the body.
+        positions: of these vertices, (m, 3).
         separation: the minimum distance.
     """
 
     surface: stiv.Surface
     rows: Indices
+    positions: Floats
     count: int
     separation: float
 
-
-@dataclass(frozen=True)
-class Contact:
-    """A point of a mover, (3,), its distance to an obstacle there, and the minimum distance between the two.
-
-    `normal`, (3,), is the direction from the obstacle to the mover.
-    """
-
-    point: Floats
-    distance: float
-    separation: float
-    normal: Floats
+    def moved(self, offset: Floats) -> Floats:
+        """The positions, (m, 3), with the body translated by an offset, (3,)."""
+        q = self.positions.copy()
+        q[: self.count] += offset
+        return q
 
 
 class RigidScene:
@@ -85,6 +74,7 @@ class RigidScene:
     Attributes:
         movers: the bodies that can be posed.
         separation: the minimum distance of all pairs of bodies without one of their own.
+        threads: number of threads of a test; 0 uses all cores.
     """
 
     def __init__(
@@ -100,7 +90,7 @@ class RigidScene:
     ) -> None:
         """Start at positions, (N, 3), and poses. separation 0: 1e-4 of the diagonal of the `moving` (None: all)."""
         self.movers, self._poses = list(movers), [pose.copy() for pose in poses]
-        self._surface, self._positions, self._threads = surface, positions.copy(), threads
+        self._surface, self._positions, self.threads = surface, positions.copy(), threads
         rows = [movers[number].rows for number in (range(len(movers)) if moving is None else moving)]
         self.separation = separation or AUTOMATIC_FRACTION * _diagonal(positions[np.concatenate(rows)])
         self._pair_separations = {(min(pair), max(pair)): h for pair, h in (pair_separations or {}).items()}
@@ -171,7 +161,7 @@ class RigidScene:
             movers.append(replace(mover, deformation=stiv.rigid(positions[mover.rows])))
         poses = [stiv.rigid_rest_controls(positions[each.rows]) for each in movers]
         distances = dict(self._pair_separations)
-        return RigidScene(self._surface, positions, movers, poses, self.separation, distances, self._threads)
+        return RigidScene(self._surface, positions, movers, poses, self.separation, distances, self.threads)
 
     def with_copies(self, mover: int, factors: Floats) -> RigidScene:
         """A scene with copies of a mover behind all movers, scaled by `factors`, (k,), about its center."""
@@ -211,7 +201,7 @@ class RigidScene:
             for (a, b), h in self._pair_separations.items()
             for pair in [(a, b), *self._copied_pairs([(a, b)], bodies, copies)]
         }
-        return RigidScene(larger, np.concatenate(parts), movers, poses, self.separation, distances, self._threads)
+        return RigidScene(larger, np.concatenate(parts), movers, poses, self.separation, distances, self.threads)
 
     def _copied_pairs(
         self, pairs: Sequence[tuple[int, int]], bodies: Sequence[int], copies: int
@@ -268,105 +258,13 @@ class RigidScene:
         for number in np.flatnonzero(self._bodies_near(mover, self.box(mover), among)):
             yield int(number), self._surface.triangles[self._element_bodies[0] == number]
 
+    def name_at(self, row: int) -> str:
+        """The name of the body of a vertex."""
+        return self._surface.bodies[int(self._surface.vertex_body[row])].name
+
     def corners(self, triangles: Indices) -> Floats:
         """Positions of the corners of triangles, (f, 3, 3)."""
         return self._positions[triangles]
-
-    def normals_of_contact(self, mover: int, among: Flags | None = None) -> Floats:
-        """Normals, (k, 3), of the triangles of both sides that intersect, and the vector between the closest points."""
-        normals = [np.empty((0, 3))]
-        for each in self.facing(mover, HERE, among):
-            q = self._positions[each.rows]
-            pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
-            corners = q[each.surface.triangles[np.unique(pairs)]]
-            normals.append(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-            least = None if len(pairs) else stiv.least_distance(q, each.surface)
-            if least is not None:
-                normals.append((least.points[1] - least.points[0])[None])
-        found: Floats = np.concatenate(normals)
-        lengths = np.linalg.norm(found, axis=1)
-        unit: Floats = found[lengths > 0] / lengths[lengths > 0, None]
-        return unit
-
-    def travel(self, mover: int, vector: Floats, among: Flags | None = None) -> Steps[float | None]:
-        """Steps that find the fraction of a displacement, (3,), at which a mover stops; None if it is free.
-
-        It stops at the minimum distance; if it starts nearer than that, where it comes nearer yet. among: see `facing`.
-        """
-        length = max(float(np.linalg.norm(vector)), 1e-300)
-        step = min(1.0, max(STRIDE * self.size(mover) / length, SHORTEST_STRIDE))
-        for number in range(int(np.ceil(1 / step))):
-            ends = np.array([number * step, min(1.0, (number + 1) * step)])
-            nearer = TOLERANCE if number == 0 else DRIFT
-            time = self._earliest_time(mover, ends[:, None] * vector, among, 1 - nearer)
-            if time <= 1:
-                return float(ends[0] + time * (ends[1] - ends[0]))
-            yield None
-        return None
-
-    def _earliest_time(self, mover: int, offsets: Floats, among: Flags | None, ratio: float) -> float:
-        """The time in [0, 1] of the first stop between two offsets of a mover, (2, 3); infinity without one."""
-        first = np.inf
-        for each in self.facing(mover, offsets, among):
-            here = self._positions[each.rows]
-            there = here.copy()
-            here[: each.count] += offsets[0]
-            there[: each.count] += offsets[1]
-            detector = stiv.Detector(each.surface, threads=self._threads)
-            first = min(first, detector.earliest_time(here, there, each.separation, ratio))
-        return first
-
-    def is_clear(self, mover: int, among: Flags | None = None) -> bool:
-        """Is a mover at least the minimum distance away from everything? Does not look inside closed surfaces."""
-        for each in self.facing(mover, HERE, among):
-            q = self._positions[each.rows]
-            if len(stiv.find_intersections(q, each.surface, threads=self._threads)):
-                return False
-            least = stiv.least_distance(q, each.surface)
-            if least is not None and least.distance < each.separation:
-                return False
-        return True
-
-    def intersected(self, mover: int) -> str:
-        """The name of a body that intersects a mover; "" if none does."""
-        for each in self.facing(mover, HERE):
-            q = self._positions[each.rows]
-            pairs = stiv.find_intersections(q, each.surface, threads=self._threads)
-            if len(pairs):
-                corners = each.surface.triangles[pairs[0], 0]
-                return self._surface.bodies[int(self._surface.vertex_body[each.rows[corners.max()]])].name
-        return ""
-
-    def nearest(self, mover: int) -> tuple[Floats, float] | None:
-        """The vector, (3,), from a mover to the nearest obstacle, and the minimum distance there; None without one."""
-        best: tuple[Floats, float] | None = None
-        for each in self.facing(mover, None):
-            q = self._positions[each.rows]
-            least = stiv.least_distance(q, each.surface)
-            if least is None:
-                continue
-            own = each.surface.triangles[least.triangles[0], 0] < each.count
-            vector = (least.points[1] - least.points[0]) * (1 if own else -1)
-            if best is None or np.linalg.norm(vector) < np.linalg.norm(best[0]):
-                best = (vector, each.separation)
-        return best
-
-    def contacts(self, mover: int, direction: Floats, reach: float) -> list[Contact]:
-        """Where obstacles stop a mover within `reach` minimum distances along a direction."""
-        found = []
-        for each in self.facing(mover, HERE, margin=1 + reach):
-            here = self._positions[each.rows]
-            there = here.copy()
-            there[: each.count] += reach * each.separation * direction
-            detector = stiv.Detector(each.surface, threads=self._threads)
-            events = detector.find(here, there, each.separation, 1 - TOLERANCE)
-            for vertices, weights, start in zip(events.vertices, events.weights, events.start_distance, strict=True):
-                own = vertices < each.count
-                point = np.abs(weights[own]) @ here[vertices[own]]
-                away = (weights @ here[vertices]) * (1 if own[0] else -1)
-                unit = away / max(float(np.linalg.norm(away)), 1e-300)
-                found.append(Contact(point, float(start), each.separation, unit))
-        return found
 
     def session(self, mover: int, box: Floats) -> Steps[stiv.EditSession]:
         """Steps that make a session that poses one mover among the obstacles in a box, (2, 3).
@@ -385,7 +283,7 @@ class RigidScene:
             separation=self.separation / 2,
             pair_separations={(a, b): h / 2 for (a, b), h in self._pair_separations.items()},
             single_precision=False,
-            threads=self._threads,
+            threads=self.threads,
         )
         deformation = stiv.concatenate([(self.movers[mover].deformation, own)], self._positions[rows])
         given = surface, deformation, self._poses[mover], options
@@ -430,7 +328,8 @@ class RigidScene:
         rows = np.concatenate([first, second])
         body = np.repeat(np.array([0, 1], np.int32), [len(first), len(second)])
         bodies = [stiv.Body("mover", "rigid"), stiv.Body("obstacles", "fixed")]
-        return Facing(self._part(_united(own, others), rows, body, bodies, ()), rows, len(first), separation)
+        surface = self._part(_united(own, others), rows, body, bodies, ())
+        return Facing(surface, rows, self._positions[rows], len(first), separation)
 
     def _used(self, elements: Elements) -> Indices:
         """The vertices of chosen triangles, loose edges and loose vertices."""
