@@ -246,12 +246,6 @@ class BlenderEdit:
         """The goal of all controls, (m, 3)."""
         return self._goal.controls
 
-    def goal_of(self, motion: Motion | ArrayLike) -> Floats:
-        """Goal, (m, 3), for a motion, which decides how the controls respond. Raises InputError as `drag` does."""
-        chosen_motion = self._goal.motion_of(motion)
-        run(self._goal.limit_steps(chosen_motion))
-        return self._goal.controls_for(chosen_motion)
-
     def aim_at(self, motion: Motion) -> None:
         """Take the goal of a motion without solving for it."""
         self._goal.controls = self._goal.controls_for(motion)
