@@ -41,8 +41,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (int round = 0; round < 4; ++round) {
     const IndexPairs expected = all_pairs(*surface, q);
     fuzz::require(test.find(q, execution) == expected, "the whole test equals the test of all pairs");
-    const bool free = expected.empty() && test.find_loose_edges(q, execution).empty() &&
-                      test.find_loose_vertices(q, execution).empty();
+    const StaticPairs found = test.find_all(q, execution);
+    fuzz::require(found.faces == expected, "and so do the faces beside loose edges and vertices");
+    const bool free = found.empty();
     fuzz::require(test.is_free(q, {}, execution) == free, "free means that nothing is found");
     if (input.empty()) break;
     std::vector<unsigned char> moved(static_cast<std::size_t>(q.rows()), 0);

@@ -48,20 +48,14 @@ class IntersectionTest {
   /// All pairs of triangles (smaller index first) that intersect.
   IndexPairs find(const PositionsView& q, Execution& execution);
 
-  /// Pairs (loose edge, triangle) that intersect apart from their shared vertices.
-  IndexPairs find_loose_edges(const PositionsView& q, Execution& execution);
-
-  /// Pairs (vertex of no edge, triangle) that intersect.
-  IndexPairs find_loose_vertices(const PositionsView& q, Execution& execution);
-
-  /// All three of them.
+  /// These, and the loose edges and vertices that intersect triangles apart from their shared vertices.
   StaticPairs find_all(const PositionsView& q, Execution& execution);
 
   /// Pairs of triangles that may intersect where each coordinate differs from q by at most `distance`, and some others
   /// that are near. For options that list near pairs.
   IndexPairs find_near(const PositionsView& q, double distance, Execution& execution);
 
-  /// The pairs of `find_loose_edges` and `find_loose_vertices`, and those that are nearer than `distance` beside their
+  /// The loose edges and vertices of `find_all`, and those that are nearer to triangles than `distance` beside their
   /// common vertices. For options that list near pairs.
   StaticPairs find_near_loose(const PositionsView& q, double distance, Execution& execution);
 

@@ -159,12 +159,10 @@ class IntersectionTest::Implementation {
     if (options.lists_near_pairs) near_.emplace(surface_, stars_);
   }
 
-  IndexPairs find(const PositionsView& q, const Execution& execution) { return find(triangles_, q, execution); }
-  IndexPairs find_loose_edges(const PositionsView& q, const Execution& execution) {
-    return find(loose_edges_, q, execution);
-  }
-  IndexPairs find_loose_vertices(const PositionsView& q, const Execution& execution) {
-    return numbered(find(loose_vertices_, q, execution));
+  IndexPairs find(const PositionsView& q, const Execution& execution) {
+    check_positions(q, execution);
+    update({&triangles_}, q, {}, execution);
+    return begin_search(triangles_, q).all(execution);
   }
 
   StaticPairs find_all(const PositionsView& q, const Execution& execution) {
@@ -236,12 +234,6 @@ class IntersectionTest::Implementation {
     };
     return !meets(triangles_, listed.triangles) && !meets(loose_edges_, listed.loose) &&
            !meets(loose_vertices_, listed.loose);
-  }
-
-  IndexPairs find(Primitives& first, const PositionsView& q, const Execution& execution) {
-    check_positions(q, execution);
-    update(&first == &triangles_ ? Kinds{&first} : Kinds{&first, &triangles_}, q, {}, execution);
-    return begin_search(first, q).all(execution);
   }
 
   IndexPairs find_among(const Primitives& first, const PositionsView& q, std::vector<CornerPair>& near,
@@ -330,16 +322,6 @@ IntersectionTest& IntersectionTest::operator=(IntersectionTest&&) noexcept = def
 IndexPairs IntersectionTest::find(const PositionsView& q, Execution& execution) {
   const FloatingPointScope floating_point;
   return implementation_->find(q, execution);
-}
-
-IndexPairs IntersectionTest::find_loose_edges(const PositionsView& q, Execution& execution) {
-  const FloatingPointScope floating_point;
-  return implementation_->find_loose_edges(q, execution);
-}
-
-IndexPairs IntersectionTest::find_loose_vertices(const PositionsView& q, Execution& execution) {
-  const FloatingPointScope floating_point;
-  return implementation_->find_loose_vertices(q, execution);
 }
 
 StaticPairs IntersectionTest::find_all(const PositionsView& q, Execution& execution) {

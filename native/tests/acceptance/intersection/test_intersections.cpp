@@ -188,14 +188,15 @@ TEST_CASE("intersections: loose edges and loose vertices against faces") {
   scene.definition.loose_edges << 3, 4, 5, 6, 0, 6;
   IntersectionTest test(scene.surface());
   Execution execution(1);
-  CHECK(test.find(scene.q, execution).empty());
-  CHECK(test.find_loose_edges(scene.q, execution) == IndexPairs{{0, 0}});
-  CHECK(test.find_loose_vertices(scene.q, execution).empty());
+  const StaticPairs touching = test.find_all(scene.q, execution);
+  CHECK(touching.faces.empty());
+  CHECK(touching.loose_edges == IndexPairs{{0, 0}});
+  CHECK(touching.loose_vertices.empty());
   CHECK_FALSE(is_free(test, scene.q));
   scene.q.row(3) << 1, 1, 0x1p-40;
   CHECK(is_free(test, scene.q));
   scene.q.row(7) << 0, 0, 0;
-  CHECK(test.find_loose_vertices(scene.q, execution) == IndexPairs{{7, 0}});
+  CHECK(test.find_all(scene.q, execution).loose_vertices == IndexPairs{{7, 0}});
   CHECK_FALSE(is_free(test, scene.q));
 }
 
