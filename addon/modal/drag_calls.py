@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a drag calls, and the goal that it solves for."""
+"""The calls of a drag, and the goal that it solves for."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a drag still has to solve: its goal, or refinements of the accepted state."""
+"""The work that remains for a drag: solves for its goal, or refinements of the accepted state."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Moment:
 
 
 class RemainingWork:
-    """What is left to solve.
+    """The next work of a drag, chosen by the results so far.
 
     Attributes:
         pending: whether the goal is to be solved for.
@@ -84,7 +84,7 @@ class RemainingWork:
         self.pending, self.refinement = False, Refinement.NONE
 
     def take_solved(self, goal: Goal, found: EditResult, moment: Moment) -> bool:
-        """Decide what follows a solve; returns whether further ones would gain little."""
+        """Choose the next work after a solve; returns whether further ones would gain little."""
         nothing_accepted = found.status == "budget" and len(found.path) == 0
         may_gain = self.repeated.may_gain(goal.state, found, moment.confirmed, moment.rests)
         is_late = moment.ends(found)
@@ -101,7 +101,7 @@ class RemainingWork:
         return self._end_settling(is_late, is_stuck)
 
     def take_settled(self, settled: EditResult, moment: Moment) -> bool:
-        """Decide what follows settling; returns whether more of it would gain little.
+        """Choose the next work after settling; returns whether more of it would gain little.
 
         A solve that used up its budget continues where it was, until it gains no more.
         """

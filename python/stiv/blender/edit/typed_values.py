@@ -17,7 +17,7 @@ from stiv.task import Steps
 
 
 class DraggedEdit(Protocol):
-    """What increments need of an edit; see `BlenderEdit`."""
+    """An edit that increments can drag; see `BlenderEdit`."""
 
     @property
     def controls(self) -> Floats:
