@@ -13,15 +13,9 @@ from json_schemas import read_valid
 
 from stiv import mesh_files
 from stiv.command_line import check, file_checking, program
+from tests.checks.check_files import APART, CROSSING, written
 
-APART = "o below\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no above\nv 0 0 1\nv 1 0 1\nv 0 1 1\nf 4 5 6\n"
-CROSSING = "o flat\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no upright ü\nv 0.2 0.2 -1\nv 0.2 0.2 1\nv 2 2 0\nf 4 5 6\n"
 TOUCHING = APART.replace("v 0 0 1\n", "v 0.25 0.25 0\n")
-
-
-def written(path, text):
-    path.write_text(text, encoding="utf-8")
-    return str(path)
 
 
 def test_a_free_mesh_ends_with_0(tmp_path, capsys):

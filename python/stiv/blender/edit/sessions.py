@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.controls.joint_regions import smallest_altitude
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -67,7 +68,7 @@ def session_options(
     return stiv.EditOptions(
         **settings.shared(),
         pair_separations=_skin_separations(assembly, control_sets, settings) | body_separations(assembly, settings),
-        weights=weights_of_all([each.weights for each in control_sets]),
+        weights=stacked_weights([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=exclude,
         overlapping=excluded_bodies(settings.excluded, assembly),
@@ -157,13 +158,6 @@ def intersects_only_in_render(assembly: Assembly, error: stiv.StartIntersectsErr
 
 def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
     return any(assembly.face(triangle).evaluation == RENDER for triangle in pair)
-
-
-def weights_of_all(weights: Sequence[Floats]) -> Floats:
-    """Stacked weights of all control sets, (m,); (m, 3) if any set has weights for each axis."""
-    if all(each.ndim == 1 for each in weights):
-        return np.concatenate(list(weights))
-    return np.concatenate([np.broadcast_to(each.reshape(len(each), -1), (len(each), 3)) for each in weights])
 
 
 def axes_of_all(control_sets: Sequence[ControlSet]) -> Floats | None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.edit.kept_session import SessionInputs, keep_session, take_session
 from stiv.blender.edit.sessions import (
     axes_of_all,
@@ -15,7 +16,6 @@ from stiv.blender.edit.sessions import (
     make_session,
     session_options,
     stack_controls,
-    weights_of_all,
 )
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
 from stiv.blender.scene.arrays import Floats
@@ -121,7 +121,7 @@ class EditSolver:
         before, self.control_sets = self.control_sets, tuple(control_sets)
         if deforms_alike:
             if self._session is not None:
-                weights = weights_of_all([each.weights for each in control_sets])
+                weights = stacked_weights([each.weights for each in control_sets])
                 self._session.set_weights(weights, axes_of_all(control_sets))
             return
         start = stack_controls([each.controls for each in control_sets])
@@ -222,7 +222,7 @@ class EditSolver:
     def keep_session(self) -> None:
         """Leave the session to the next edit. This solver must not be used any more."""
         if self._session is not None and self._inputs is not None:
-            weights = weights_of_all([each.weights for each in self.control_sets])
+            weights = stacked_weights([each.weights for each in self.control_sets])
             options = replace(self._inputs.options, weights=weights, weight_axes=axes_of_all(self.control_sets))
             keep_session(replace(self._inputs, options=options), self._session, self.deformation)
         self._session = None

@@ -21,6 +21,7 @@ from stiv.blender.controls.cage import CageWriter
 from stiv.blender.controls.cage_surface import HoldingWriter
 from stiv.blender.controls.control_reading import make_control_sets
 from stiv.blender.controls.control_set import ControlSet, Participant
+from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.controls.joined_seams import SeamWriter, join_rows
 from stiv.blender.controls.participants import merge_participants
 from stiv.blender.controls.points import PointGoal, point_weights
@@ -33,7 +34,6 @@ from stiv.blender.edit.sessions import (
     split_controls,
     stack_controls,
     storage_frames,
-    weights_of_all,
     write_controls,
 )
 from stiv.blender.scene.arrays import Floats, Singles, transform_points
@@ -129,7 +129,7 @@ class ReshapeSnapshot:
 
     def edit_options(self) -> stiv.EditOptions:
         """Options for edits of all controls that may move."""
-        max_weights = weights_of_all([each.max_weights for each in self.control_sets])
+        max_weights = stacked_weights([each.max_weights for each in self.control_sets])
         return stiv.EditOptions(
             **self.settings.shared(),
             pair_separations=body_separations(self.assembly, self.settings),
