@@ -91,7 +91,7 @@ class Drop(LayoutTask):
             scene.leave_out([] if above else [len(scene.movers) - 1])
         if np.linalg.norm(scene.movers[mover].along_free(self._direction) - self._direction) > 1e-6:
             return Rest("locked")
-        return (yield from rest(scene, mover, self._direction, self._settings.turn, watch))
+        return (yield from rest(scene, mover, self._direction, watch, turn=self._settings.turn))
 
     def _write(self) -> LayoutReport:
         return write_rests(self._edit, self._rests, "nothing below")
@@ -133,9 +133,9 @@ class SettleIntoContact(LayoutTask):
         if np.linalg.norm(scene.movers[mover].along_free(direction) - direction) > 1e-6:
             scene.set_pose(mover, start)
             return Rest("locked")
-        found = yield from rest(scene, mover, direction, self._settings.turn, watch, limit)
+        found = yield from rest(scene, mover, direction, watch, limit, turn=self._settings.turn)
         if found.status == "nothing":  # it would slide off: the straight stop alone
-            found = yield from rest(scene, mover, direction, False, watch, limit)
+            found = yield from rest(scene, mover, direction, watch, limit, turn=False)
         if found.status == "nothing":
             scene.set_pose(mover, start)
         return found

@@ -61,12 +61,12 @@ def fall(scene: RigidScene, mover: int, direction: Floats, length: float = np.in
 
 
 def rest(
-    scene: RigidScene, mover: int, direction: Floats, turn: bool, watch: Watch, length: float = np.inf
+    scene: RigidScene, mover: int, direction: Floats, watch: Watch, length: float = np.inf, *, turn: bool
 ) -> Steps[Rest]:
     """Steps that let a mover fall along a direction until it rests. Without support, its pose does not change.
 
-    turn: let it turn and slide until it is supported from below, if it can. watch: stops them. length: of the
-    way along the direction.
+    watch: stops them. length: of the way along the direction. turn: let it turn and slide until it is supported from
+    below, if it can.
     """
     start = scene.pose(mover)
     if (yield from fall(scene, mover, direction, length)) is None:
