@@ -255,7 +255,7 @@ class DragLoop:
         is_new = work.unfinished is None
         work.unfinished = None
         hands_over = not self._confirmed and not self._rests()
-        budget, hand_over = self._budget.of_solve(hands_over, self._confirmed, self.writer.seconds)
+        budget, hand_over = self._budget.of_solve(self.writer.seconds, hands_over=hands_over, confirmed=self._confirmed)
         budget *= 2 ** work.repeated.doublings(is_new or self._confirmed)
         steps = self.edit.drag_steps(goal.motion, time_budget=budget, hand_over=hand_over)
         can_cancel = is_new and work.repeated.fruitless > 0 and not self._confirmed

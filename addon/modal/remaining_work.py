@@ -98,7 +98,7 @@ class RemainingWork:
             self.refinement = Refinement.NONE
             return False
         is_stuck = self.repeated.is_poor or (found.status == "blocked" and self.repeated.fruitless > 0)
-        return self._end_settling(is_late, is_stuck)
+        return self._end_settling(is_late=is_late, is_stuck=is_stuck)
 
     def take_settled(self, settled: EditResult, moment: Moment) -> bool:
         """Choose the next work after settling; returns whether more of it would gain little.
@@ -110,9 +110,9 @@ class RemainingWork:
         self.refinement = Refinement.SETTLING
         is_late = moment.ends(settled)
         is_stuck = not is_late and not self.repeated.may_settle(settled, moment.confirmed or moment.rests)
-        return self._end_settling(is_late, is_stuck)
+        return self._end_settling(is_late=is_late, is_stuck=is_stuck)
 
-    def _end_settling(self, is_late: bool, is_stuck: bool) -> bool:
+    def _end_settling(self, *, is_late: bool, is_stuck: bool) -> bool:
         """End the solves, if they are stuck, or late: then without a comparison. Returns whether they ended."""
         if is_late or is_stuck:
             self.refinement = Refinement.NONE if is_late else Refinement.CONFIRMING

@@ -19,13 +19,13 @@ class SolveBudget:
         """Let the next solve take as long as a state takes to be shown."""
         self._while_moving = min(max(BUDGET, seconds), MAX_BUDGET)
 
-    def of_solve(self, hands_over: bool, confirmed: bool, written_in: float) -> tuple[float, float | None]:
+    def of_solve(self, written_in: float, *, hands_over: bool, confirmed: bool) -> tuple[float, float | None]:
         """Budget of a solve, and the time after which it hands over the next state that it accepts; None: never.
 
         Args:
+            written_in: seconds in which the last state was written.
             hands_over: whether the mouse moves, so that a newer state is worth more than a closer one.
             confirmed: whether the drag is confirmed.
-            written_in: seconds in which the last state was written.
 
         """
         budget = FINAL_BUDGET if confirmed else self._while_moving
