@@ -14,7 +14,7 @@ from stiv.blender.animation.animated_parts import AnimatedPart, Values
 from stiv.blender.animation.tracks import Track, lasting_seams
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
 from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note
-from stiv.blender.controls.posed_surface import skin_weights
+from stiv.blender.controls.rig_twin import skin_weights
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_positions_of

@@ -63,13 +63,7 @@ def make_control_sets_steps(
     """Steps of `make_control_sets`."""
     turns = Turns()
     if any(each.role == "bones" for each in participants):
-        rigs = [each for each in participants if each.role == "bones"]
-        clothes = [each for each in participants if each.role != "bones"]
-        garments = make_garments(context, clothes, meshes, settings)
-        posed = make_bone_set(context, rigs, meshes, settings, kind, garments)
-        assert posed.posed is not None
-        _check_surface(posed, posed.posed.meshes)
-        return [posed], []
+        return [_posed(context, participants, meshes, settings, kind)], []
     participants, note = leave_held_passengers(context, participants, kind)
     participants = drop_locked(participants, kind)
     groups = find_rigid_groups(participants, evaluations_of(meshes), kind)
@@ -86,19 +80,10 @@ def make_control_sets_steps(
     control_sets = [_rigid(group, meshes, settings, kind) for group in groups]
     for participant in participants:
         yield from turns.take()
-        if participant.role == "cage":
-            surfaces = _shown_as(participant.reference.name, meshes, settings)
-            shown = _read_in(surfaces, meshes)
-            control_sets.append((yield from make_cage_set_steps(participant, surfaces, shown, context.scene, settings)))
-        elif participant.role == "curve":
-            surfaces = _shown_as(participant.reference.name, meshes, settings)
-            evaluations = [meshes[index].read_from for index in surfaces]
-            control_sets.append(make_curve_set(participant, surfaces, evaluations, context.scene, settings))
-        elif participant.role == "soft":
-            surfaces = _shown_as(participant.reference.name, meshes, settings)
-            control_sets += make_handle_sets(participant, surfaces, _read_in(surfaces, meshes), context.scene, settings)
-        elif participant.role == "lattice":
+        if participant.role == "lattice":
             control_sets.append(_lattice(context, participant, by_lattice[participant.reference], meshes, settings))
+        elif participant.role != "rigid":
+            control_sets += yield from _deformed_steps(context, participant, meshes, settings)
     for control_set in control_sets:
         _check_surface(control_set, meshes)
         _check_references(control_set, {name for each in control_sets for name in each.names})
@@ -107,6 +92,36 @@ def make_control_sets_steps(
         found += [make_passenger_set(group, settings, kind) for group in passengers]
     noted = [replace(each, passenger_note=note) for each in found[:1]]
     return [*noted, *found[1:]], groups
+
+
+def _posed(
+    context: bpy.types.Context,
+    participants: Sequence[Participant],
+    meshes: Sequence[VisibleMesh],
+    settings: EditSettings,
+    kind: str,
+) -> ControlSet:
+    rigs = [each for each in participants if each.role == "bones"]
+    clothes = [each for each in participants if each.role != "bones"]
+    garments = make_garments(context, clothes, meshes, settings)
+    posed = make_bone_set(context, rigs, meshes, settings, kind, garments)
+    assert posed.posed is not None
+    _check_surface(posed, posed.posed.meshes)
+    return posed
+
+
+def _deformed_steps(
+    context: bpy.types.Context, participant: Participant, meshes: Sequence[VisibleMesh], settings: EditSettings
+) -> Steps[list[ControlSet]]:
+    """Steps that make the control sets of a mesh or curve whose own points are the controls, or its handles."""
+    surfaces = _shown_as(participant.reference.name, meshes, settings)
+    shown = _read_in(surfaces, meshes)
+    if participant.role == "curve":
+        evaluations = [each.evaluation for each in shown]
+        return [make_curve_set(participant, surfaces, evaluations, context.scene, settings)]
+    if participant.role == "soft":
+        return make_handle_sets(participant, surfaces, shown, context.scene, settings)
+    return [(yield from make_cage_set_steps(participant, surfaces, shown, context.scene, settings))]
 
 
 def _rigid(group: RigidGroup, meshes: Sequence[VisibleMesh], settings: EditSettings, kind: str) -> ControlSet:

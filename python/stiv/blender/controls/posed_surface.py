@@ -3,10 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import bpy
 import numpy as np
 
 import stiv
@@ -14,13 +13,12 @@ from stiv.blender.controls.bone_channels import BoneChannels
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
 from stiv.blender.controls.garments import Blocks, Garment, rows_of_blocks
 from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
-from stiv.blender.scene.arrays import Flags, Floats, Indices, as_matrix, transform_points
+from stiv.blender.controls.rig_twin import MISSING, PosedMesh, RigTwin
+from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import mesh_seams
 from stiv.blender.scene.evaluated_scene import VisibleMesh
-from stiv.blender.scene.evaluation_copies import EvaluationCopies
-from stiv.blender.scene.mesh_reading import evaluated_mesh, read_corner_vertices, read_positions
 from stiv.blender.scene.references import ObjectReference
-from stiv.blender.scene.stack_twin import EvaluatedStack, kept_twin, kept_twins
+from stiv.blender.scene.stack_twin import kept_twin, kept_twins
 from stiv.seams import Seams
 
 TURNED = 1e-5  # change of a matrix above which a bone turns against its parent
@@ -78,10 +76,19 @@ class PosedSurface:
         pairs = zip(moved, regions, strict=True)
         self.untested = frozenset((mesh.owner.name, a, b) for mesh, each in pairs for a, b in each.untested)
         self.note = joint_note(moved, regions)
-        poses, places = self._poses, _places_of(moved, [self.meshes[k] for k in self.surfaces])
+        places = _places_of(moved, [self.meshes[k] for k in self.surfaces])
         vertices = MergedRows.of(places, self.seams, np.concatenate([mesh.world() for mesh in moved]))
-        rows, merger = vertices.rows, _Merger(vertices, self.start)
-        self._rows, self._merger = rows, merger
+        self._rows, self._merger = vertices.rows, _Merger(vertices, self.start)
+        self.deformation = self._make_deformation(bones, scalars, jacobian, bool(garments))
+
+    def _make_deformation(
+        self, bones: Sequence[BoneChannels], scalars: BoneScalars, jacobian: Floats, has_garments: bool
+    ) -> stiv.ScalarDeformation | stiv.ObservedDeformation:
+        """The deformation by the scalars of bones, and by the controls of garments.
+
+        Its functions do not refer to this object, which would then wait for a collection.
+        """
+        poses, merger = self._poses, self._merger
         lower, upper = (scalars.of(each) for each in ([b.lower for b in bones], [b.upper for b in bones]))
 
         def evaluate(values: Floats) -> Floats | None:
@@ -93,13 +100,11 @@ class PosedSurface:
                 return None
             return merger.merged(values, poses.evaluate(values, controls[len(lower) :]))
 
-        self.deformation: stiv.ScalarDeformation | stiv.ObservedDeformation
-        if garments:
+        if has_garments:
             with kept_twins():
-                self.deformation = stiv.observed(evaluate_dressed, self._poses.blocks(jacobian, rows))
-        else:
-            longest = scalars.of([each.longest_steps for each in bones])
-            self.deformation = stiv.scalars(evaluate, jacobian[rows], lower=lower, upper=upper, longest_step=longest)
+                return stiv.observed(evaluate_dressed, poses.blocks(jacobian, self._rows))
+        longest = scalars.of([each.longest_steps for each in bones])
+        return stiv.scalars(evaluate, jacobian[self._rows], lower=lower, upper=upper, longest_step=longest)
 
     @property
     def opened(self) -> Floats | None:
@@ -324,9 +329,9 @@ class _Poses:
         lengths[:3] = STEP * self._size
         return self.scalars.of([lengths] * len(self.scalars.bones))
 
-    def _observe(self, values: Floats) -> list[_PosedMesh]:
+    def _observe(self, values: Floats) -> list[PosedMesh]:
         """All meshes at scalars, (k,), in their order."""
-        shown: dict[tuple[str, ObjectReference], list[_PosedMesh]] = {}
+        shown: dict[tuple[str, ObjectReference], list[PosedMesh]] = {}
         for evaluation in dict.fromkeys(read_from for read_from, _ in self._owners):
             twin = self._twin(evaluation)
             for each in self._worn:
@@ -340,111 +345,3 @@ class _Poses:
         rigs = [each.rig for each in self.scalars.bones]
         worn = frozenset(name for each in self._worn for name in each.garment.controls.names)
         return RigTwin(rigs, self._followers | worn, {owner for _, owner in self._owners}, evaluation, worn)
-
-
-@dataclass(frozen=True)
-class _PosedMesh:
-    """A mesh and its matrix in a pose."""
-
-    stack: EvaluatedStack
-    matrix: Floats
-
-    def is_like(self, start: _PosedMesh) -> bool:
-        """Has it the topology of the start, and finite positions?"""
-        return self.stack.has_topology_of(start.stack) and bool(np.isfinite(self.stack.positions).all())
-
-    def world(self) -> Floats:
-        """World positions, (n, 3)."""
-        if np.array_equal(self.matrix, np.eye(4)):
-            return self.stack.positions.astype(np.float64)
-        return transform_points(self.matrix, self.stack.positions)
-
-
-def _count(items: bpy.types.bpy_prop_collection) -> Indices:
-    return np.array([len(items)], np.int32)
-
-
-NONE = np.empty(0, np.int32)
-MISSING = _PosedMesh(EvaluatedStack(np.empty((0, 3), np.float32), NONE, NONE), np.eye(4))
-
-
-class RigTwin:
-    """Copies of rigs and of all objects that move with them, in a scene of their own."""
-
-    def __init__(
-        self,
-        rigs: Sequence[ObjectReference],
-        followers: frozenset[str],
-        shown: set[ObjectReference],
-        evaluation: str,
-        worn: frozenset[str] = frozenset(),
-    ) -> None:
-        """shown: the owners of the meshes that are read. worn: names of the objects whose data is written."""
-        scene = bpy.context.scene
-        objects = [ob for ob in scene.objects if ob.name in followers]
-        own_data = [ob for ob in objects if has_drivers(ob.data) or has_drivers(getattr(ob.data, "shape_keys", None))]
-        own_data += [ob for ob in objects if ob.name in worn and ob not in own_data]
-        wanted = {each.session_uid for each in (*shown, *rigs)}
-        self.copies = EvaluationCopies(scene, evaluation, own_data)
-        try:
-            self.copies.fill(objects, lambda ob: ob.session_uid in wanted)
-            self._rigs = {each.session_uid: self.copies.copy_of(each) for each in rigs}
-            self._worn = {ob.name: self.copies.copy_of(ObjectReference.of(ob)) for ob in objects if ob.name in worn}
-            self._shown = {each.session_uid for each in shown}
-        except BaseException:
-            self.copies.remove()
-            raise
-
-    def evaluate(self, pose: Iterator[tuple[BoneChannels, Floats]]) -> Iterator[tuple[ObjectReference, _PosedMesh]]:
-        """The meshes in a pose, with their owners."""
-        for bone, channels in pose:
-            bone.write(channels, self._rigs[bone.rig.session_uid].pose.bones[bone.name])
-        graph = self.copies.depsgraph
-        graph.update()
-        for instance in graph.object_instances:
-            if instance.object.type != "MESH" or not (instance.show_self or instance.is_instance):
-                continue
-            copy = instance.parent.original if instance.is_instance else instance.object.original
-            owner = self.copies.owner(copy)
-            if owner.session_uid in self._shown:
-                with evaluated_mesh(instance.object) as mesh:
-                    stack = EvaluatedStack(read_positions(mesh), read_corner_vertices(mesh), _count(mesh.polygons))
-                yield ObjectReference.of(owner), _PosedMesh(stack, as_matrix(instance.matrix_world))
-
-    def copy_of(self, name: str) -> bpy.types.Object:
-        """The copy of an object whose data is written."""
-        return self._worn[name]
-
-    def local_matrices(self) -> dict[tuple[int, str], Floats]:
-        """The matrix of each bone relative to its parent, by rig and name."""
-        graph, found = self.copies.depsgraph, {}
-        for number, rig in self._rigs.items():
-            for bone in rig.evaluated_get(graph).pose.bones:
-                if bone.parent is not None:
-                    found[number, bone.name] = as_matrix(bone.parent.matrix.inverted_safe() @ bone.matrix)
-        return found
-
-    def weights(self, owner: ObjectReference, count: int) -> tuple[list[str], Floats]:
-        """Names of the bones that have vertex groups, and their weights, (n, g), at n evaluated vertices."""
-        bones = {bone.name for rig in self._rigs.values() for bone in rig.data.bones}
-        return skin_weights(self.copies.evaluated(owner), bones, count)
-
-
-def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) -> tuple[list[str], Floats]:
-    """Names of the bones that have vertex groups, and their weights, (n, g), at n vertices of an evaluated object."""
-    names = [group.name for group in shown.vertex_groups if group.name in bones] if shown.type == "MESH" else []
-    result = np.zeros((count, len(names)))
-    column = {shown.vertex_groups[name].index: k for k, name in enumerate(names)}
-    with evaluated_mesh(shown) as mesh:
-        if names and len(mesh.vertices) == count:
-            for row, vertex in enumerate(mesh.vertices):
-                for group in vertex.groups:
-                    if group.group in column:
-                        result[row, column[group.group]] = group.weight
-    return names, result
-
-
-def has_drivers(owner: bpy.types.ID | None) -> bool:
-    """Has an ID drivers?"""
-    animation = getattr(owner, "animation_data", None)
-    return animation is not None and len(animation.drivers) > 0
