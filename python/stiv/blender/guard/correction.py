@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corrects the result of any tool: it is the goal of edits from the last accepted state."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from stiv import InputError
-from stiv.blender.controls.control_set import ControlSet, Participant
-from stiv.blender.controls.directions import ALL_FREE, NONE_FREE
+from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement
-from stiv.blender.controls.joined_seams import seam_message
-from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import (
     EDITABLE_TYPES,
     make_participant,
@@ -20,15 +17,13 @@ from stiv.blender.controls.participants import (
     merge_participants,
     moves_surface,
 )
-from stiv.blender.controls.placement_goals import RotationGoal, respond
-from stiv.blender.controls.points import PointGoal, point_weights
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.guard.changes import Change, Changes, compare
-from stiv.blender.guard.scene_state import ObjectState, SceneState, read_state
-from stiv.blender.guard.tool_motion import tool_motion
-from stiv.blender.scene.arrays import Flags, Floats, Indices, transform_points
+from stiv.blender.guard.scene_state import SceneState, read_state
+from stiv.blender.guard.tool_goals import ToolGoals, controls_after, with_response
+from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.evaluations import is_visible
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
@@ -227,7 +222,7 @@ def _passes(
         kind = "scale" if all(_kind(change, done) == "scale" for change in now if change.placed) else "rotate"
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {_operation(change, done) for change in now}
-        goals = _ToolGoals.between(present, wanted, now)
+        goals = ToolGoals.between(present, wanted, now)
         outcomes.append((yield from _edit(context, settings, goals, kind, end)))
 
 
@@ -258,40 +253,16 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
     return [change for change in changes if not has_changing_parent(change.reference.session_uid)]
 
 
-@dataclass(frozen=True)
-class _ToolGoals:
-    """A tool's changes by the object's name: the change, the state after it, and the motion of placed objects."""
-
-    changes: dict[str, Change]
-    after: dict[str, ObjectState]
-    motions: dict[str, Motion]
-
-    @staticmethod
-    def between(present: SceneState, wanted: SceneState, changes: Sequence[Change]) -> "_ToolGoals":
-        states = {each.reference.name: (present[number], wanted[number]) for each, number in _numbered(changes)}
-        by_name = {each.reference.name: each for each in changes}
-        motions = {name: tool_motion(each, *states[name]) for name, each in by_name.items() if each.placed}
-        return _ToolGoals(by_name, {name: after for name, (_, after) in states.items()}, motions)
-
-    def change_of(self, control_set: ControlSet) -> Change | None:
-        """The change of the first object of a control set that the tool changed."""
-        return next((self.changes[name] for name in control_set.names if name in self.changes), None)
-
-
-def _numbered(changes: Sequence[Change]) -> Iterator[tuple[Change, int]]:
-    return ((change, change.reference.session_uid) for change in changes)
-
-
 def _edit(
-    context: bpy.types.Context, settings: EditSettings, goals: _ToolGoals, kind: str, end: float
+    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float
 ) -> Steps[Outcome]:
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
     edit = yield from BlenderEdit.begin_with_steps(
         context, correction_settings(settings), kind, _participants(context, settings, goals.changes),
-        lambda control_set: _with_response(control_set, goals, settings),
+        lambda control_set: with_response(control_set, goals, settings),
     )  # fmt: skip
-    goal = stack_controls([_goal_of(each, goals) for each in edit.control_sets])
+    goal = stack_controls([controls_after(each, goals) for each in edit.control_sets])
     return (yield from move_to_goal(edit, goal, end))
 
 
@@ -344,61 +315,6 @@ def _participants(context: bpy.types.Context, settings: EditSettings, changes: d
             participant = Participant(ObjectReference.of(ob), role, True)
         participants += [] if participant is None else [participant]
     return merge_participants(participants)
-
-
-def _with_response(control_set: ControlSet, goals: _ToolGoals, settings: EditSettings) -> ControlSet:
-    """Give what the tool changed the response that an edit of the same kind gives."""
-    change = goals.change_of(control_set)
-    if change is None:
-        return control_set
-    weight = settings.response_weight(True)
-    if change.points is None:
-        return _with_placement_response(control_set, change, goals.motions[change.reference.name], weight)
-    moved = change.points[_followed_vertices(control_set, change)]
-    return replace(
-        control_set,
-        weights=point_weights(moved, weight, settings.response_weight(False), control_set.max_weights),
-        rule=PointGoal(moved, control_set.controls),
-        note=""
-        if control_set.control_seams is None
-        else seam_message(control_set.names[0], change.points, control_set.control_seams),
-    )
-
-
-def _with_placement_response(control_set: ControlSet, change: Change, motion: Motion, weight: float) -> ControlSet:
-    """A rotation responds by its angle, a uniform scale by one factor; what only moved turns if settings allow it."""
-    rule = control_set.rule
-    if isinstance(rule, RotationGoal) and not change.turned and not rule.free_axis:
-        return respond(control_set, ALL_FREE.within(rule.free), NONE_FREE, weight)
-    return rule.limited(control_set, motion, weight)
-
-
-def _goal_of(control_set: ControlSet, goals: _ToolGoals) -> Floats:
-    """Controls after the tool, (m, 3)."""
-    change = goals.change_of(control_set)
-    if change is None:
-        return control_set.controls
-    name = change.reference.name
-    points = goals.after[name].points
-    if control_set.frame is not None and points is not None and change.points is not None:
-        return transform_points(control_set.frame, points[_followed_vertices(control_set, change)])
-    return control_set.rule.goal(control_set.controls, control_set.controls, goals.motions[name])
-
-
-def _followed_vertices(control_set: ControlSet, change: Change) -> Indices:
-    """The vertex or point that each control follows, (m,); on a seam, one that the tool moved."""
-    assert change.points is not None
-    chosen = _unmirrored_vertices(control_set, change.points)
-    return chosen if control_set.kept is None else chosen[control_set.kept]
-
-
-def _unmirrored_vertices(control_set: ControlSet, changed: Flags) -> Indices:
-    if control_set.control_seams is None:
-        return np.arange(len(changed), dtype=np.int32)
-    chosen = control_set.control_seams.first.copy()
-    moved = np.flatnonzero(changed)[::-1].astype(np.int32)
-    chosen[control_set.control_seams.index[moved]] = moved
-    return chosen
 
 
 def _steps_to(edit: BlenderEdit, goal: Floats) -> list[Floats]:

@@ -100,8 +100,10 @@ def guard_result_steps(
     end = correction_deadline(settings)
     present = read_state(context)
     changes = compare(accepted.state, present)
+    guard = _Guard(context, settings, accepted, present, changes, end, GuardedResult(reason=changes.unsupported))
     try:
-        return (yield from _guard(context, settings, accepted, present, changes, end))
+        yield from guard.correct()
+        return guard.result
     except (GeneratorExit, Left) as ending:
         if changes.unsupported or not isinstance(ending, Left):
             with suppress(InputError, SceneChangedError):
@@ -109,33 +111,157 @@ def guard_result_steps(
         raise
 
 
-def _guard(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    present: SceneState,
-    changes: Changes,
-    end: float,
-) -> Steps[GuardedResult]:
-    result = GuardedResult(reason=changes.unsupported)
-    start = accepted.state
-    if changes.unsupported:
-        result.pairs = yield from find_intersections_steps(context, settings)
-        yield None
-        yield from _guard_new_geometry(context, settings, accepted, changes, result, end)
-        start = _start_of(changes, accepted.state, read_state(context))
-    if changes.posed and changes.changes:
-        _restore_poses(context, accepted.state, changes.posed)
-    if changes.changes and not (yield from _guard_overlapping_part(context, settings, accepted, changes, result, end)):
-        yield from _guard_moved(context, settings, accepted, start, changes, result, end)
-    if changes.posed:
-        yield from _guard_poses(context, settings, accepted, present, changes.posed, result, end)
-    tested = changes.unsupported and not changes.changes and not result.wrote
-    followed = changes.changes or changes.posed
-    if not tested and (not followed or result.reason or result.deformers or accepted.known.pairs):
-        yield None
-        result.pairs = yield from find_intersections_steps(context, settings)
-    return result
+@dataclass(frozen=True)
+class _Guard:
+    """Corrects a tool's result until a deadline.
+
+    Attributes:
+        present: the tool's result.
+        changes: from the accepted state to it.
+        end: the deadline.
+        result: filled by the corrections.
+    """
+
+    context: bpy.types.Context
+    settings: EditSettings
+    accepted: AcceptedScene
+    present: SceneState
+    changes: Changes
+    end: float
+    result: GuardedResult
+
+    def correct(self) -> Steps[None]:
+        """Steps that correct the scene; the intersections that are left are in the result."""
+        changes, result = self.changes, self.result
+        start = self.accepted.state
+        if changes.unsupported:
+            result.pairs = yield from find_intersections_steps(self.context, self.settings)
+            yield None
+            yield from self._correct_new_geometry()
+            start = _start_of(changes, self.accepted.state, read_state(self.context))
+        if changes.posed and changes.changes:
+            _restore_poses(self.context, self.accepted.state, changes.posed)
+        if changes.changes and not (yield from self._correct_overlapping_part()):
+            yield from self._correct_moved(start)
+        if changes.posed:
+            yield from self._correct_poses()
+        tested = changes.unsupported and not changes.changes and not result.wrote
+        followed = changes.changes or changes.posed
+        if not tested and (not followed or result.reason or result.deformers or self.accepted.known.pairs):
+            yield None
+            result.pairs = yield from find_intersections_steps(self.context, self.settings)
+
+    def _correct_overlapping_part(self) -> Steps[bool]:
+        """Steps that correct a translation of whole components of a mesh that intersects itself.
+
+        False if it is something else.
+        """
+        if self.changes.unsupported or len(self.changes.changes) != 1:
+            return False
+        change = self.changes.changes[0]
+        reference, part = change.reference, change.points
+        before = self.accepted.state[reference.session_uid].points
+        if part is None or before is None or (reference.name, reference.name) not in self.accepted.known.objects:
+            return False
+        ob = reference.find()
+        if ob.type != "MESH" or joins_others(read_edges(ob.data), part):
+            return False
+        corrected = yield from correct_part(
+            self.context, self.settings, self.accepted.known, reference, part, before[part], self.end
+        )
+        if corrected:
+            self.result.wrote = True
+            self.result.corrected.append(reference.name)
+        return corrected is not None
+
+    def _correct_moved(self, start: SceneState) -> Steps[None]:
+        try:
+            left_out = self.accepted.known.left_out(self.settings)
+            supported = replace(self.changes, unsupported="")
+            outcome = yield from correct_after_tool_steps(self.context, left_out, start, supported, self.end)
+        except (InputError, SceneChangedError) as error:
+            self.result.reason = str(error)
+            return
+        self.result.deformers = outcome.deformers
+        self.result.add(outcome)
+
+    def _correct_poses(self) -> Steps[None]:
+        """Correct poses and values of shape keys, from the accepted ones toward those of the tool."""
+        left_out = self.accepted.known.left_out(self.settings)
+        try:
+            outcome = yield from correct_poses_steps(
+                self.context, left_out, self.accepted.state, self.present, self.changes.posed, self.end
+            )
+        except (InputError, SceneChangedError) as error:
+            self.result.reason = self.result.reason or str(error)
+            return
+        self.result.add(outcome)
+
+    def _correct_new_geometry(self) -> Steps[None]:
+        """Correct extrusions and new objects that intersect, by the pairs of the result."""
+        fresh = self.accepted.known.fresh(self.result.pairs)
+        names = {name for pair in fresh for name in object_pair(pair)}
+        created = {each.name: each for each in self.changes.added if each.session_uid not in self.accepted.objects}
+        try:
+            for reference in _users_of_meshes(self.changes.rebuilt, names):
+                yield None
+                if is_over(self.end):
+                    break
+                yield from self._correct_rebuilt(reference)
+            if touches_others(fresh, created):
+                entering = [created[name].session_uid for name in sorted(names & created.keys())]
+                yield from self._correct_new_objects(set(created), entering, fresh)
+        except (InputError, SceneChangedError) as error:
+            self.result.reason = str(error)
+
+    def _correct_rebuilt(self, reference: ObjectReference) -> Steps[None]:
+        """Correct an extrusion, or a part that was added and did not come from an object that is gone, as in Join."""
+        context, settings, accepted, end = self.context, self.settings, self.accepted, self.end
+        before, after = accepted.state[reference.session_uid], read_object(reference.find())
+        added = None if self.changes.removed else find_new_part(before, after, read_edges(reference.find().data))
+        if added is None:
+            self.result.add((yield from correct_extrusion(context, settings, accepted, reference, end)))
+            return
+        source, known, corrected = find_copied(accepted, reference, added), accepted.known, False
+        if source is not None and after.points is not None:
+            origins = after.points[source]
+            if np.array_equal(after.points[added], origins):
+                self.result.reason = f"{reference.name}: the copy is in the place of its source; move it"
+                return
+            corrected = bool((yield from correct_part(context, settings, known, reference, added, origins, end)))
+        is_left = reference.name in fresh_objects(context, settings, known)
+        placed = is_left and (yield from place_part_freely(context, settings, known, reference, added, end))
+        self.result.wrote |= corrected or placed
+        if placed or corrected:
+            (self.result.placed if placed else self.result.corrected).append(reference.name)
+
+    def _correct_new_objects(self, created: set[str], entering: list[int], fresh: Sequence[FacePair]) -> Steps[None]:
+        """Correct copies from the places of their originals, then place new objects that still intersect.
+
+        created: names of all new objects. entering: session numbers of those that intersect. fresh: their
+        intersections.
+        """
+        context, settings, accepted = self.context, self.settings, self.accepted
+        present = read_state(context)
+        in_place = find_in_place(accepted, present, entering)
+        if in_place is not None:
+            self.result.reason = "{}: is in the place of {}; move it".format(*in_place)
+            return
+        originals = find_originals(accepted, present, entering)
+        through = {
+            frozenset({present[copy].reference.name, accepted.state[original].reference.name})
+            for copy, original in originals.items()
+        }
+        blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
+        if originals and touches_others(blocking, created):
+            with suppress(StartIntersectsError):  # what the copy passes there, its original does not
+                self.result.add((yield from correct_copies(context, settings, accepted, originals, self.end)))
+            yield None
+            if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
+                return
+        if (yield from place_freely(context, settings, accepted.known, created, self.end)):
+            self.result.wrote = True
+            self.result.placed += sorted(created)
 
 
 def _start_of(changes: Changes, accepted: SceneState, present: SceneState) -> SceneState:
@@ -144,104 +270,11 @@ def _start_of(changes: Changes, accepted: SceneState, present: SceneState) -> Sc
     return {number: accepted[number] if number in moved else state for number, state in present.items()}
 
 
-def _guard_overlapping_part(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    changes: Changes,
-    result: GuardedResult,
-    end: float,
-) -> Steps[bool]:
-    """Steps that correct a translation of whole components of a mesh that intersects itself.
-
-    False if it is something else.
-    """
-    if changes.unsupported or len(changes.changes) != 1:
-        return False
-    change = changes.changes[0]
-    reference, part = change.reference, change.points
-    before = accepted.state[reference.session_uid].points
-    if part is None or before is None or (reference.name, reference.name) not in accepted.known.objects:
-        return False
-    ob = reference.find()
-    if ob.type != "MESH" or joins_others(read_edges(ob.data), part):
-        return False
-    corrected = yield from correct_part(context, settings, accepted.known, reference, part, before[part], end)
-    if corrected:
-        result.wrote = True
-        result.corrected.append(reference.name)
-    return corrected is not None
-
-
-def _guard_moved(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    start: SceneState,
-    changes: Changes,
-    result: GuardedResult,
-    end: float,
-) -> Steps[None]:
-    try:
-        left_out = accepted.known.left_out(settings)
-        supported = replace(changes, unsupported="")
-        outcome = yield from correct_after_tool_steps(context, left_out, start, supported, end)
-    except (InputError, SceneChangedError) as error:
-        result.reason = str(error)
-        return
-    result.deformers = outcome.deformers
-    result.add(outcome)
-
-
 def _restore_poses(context: bpy.types.Context, state: SceneState, posed: Sequence[ObjectReference]) -> None:
     """Restore accepted poses, from which other changes are corrected first."""
     for reference in posed:
         state[reference.session_uid].pose.restore(reference.find())
     context.view_layer.update()
-
-
-def _guard_poses(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    present: SceneState,
-    posed: Sequence[ObjectReference],
-    result: GuardedResult,
-    end: float,
-) -> Steps[None]:
-    """Correct poses and values of shape keys, from the accepted ones toward those of the tool."""
-    left_out = accepted.known.left_out(settings)
-    try:
-        outcome = yield from correct_poses_steps(context, left_out, accepted.state, present, posed, end)
-    except (InputError, SceneChangedError) as error:
-        result.reason = result.reason or str(error)
-        return
-    result.add(outcome)
-
-
-def _guard_new_geometry(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    changes: Changes,
-    result: GuardedResult,
-    end: float,
-) -> Steps[None]:
-    """Correct extrusions and new objects that intersect, by the pairs of the result."""
-    fresh = accepted.known.fresh(result.pairs)
-    names = {name for pair in fresh for name in object_pair(pair)}
-    created = {each.name: each for each in changes.added if each.session_uid not in accepted.objects}
-    try:
-        for reference in _users_of_meshes(changes.rebuilt, names):
-            yield None
-            if is_over(end):
-                break
-            yield from _guard_rebuilt(context, settings, accepted, changes, reference, result, end)
-        if touches_others(fresh, created):
-            entering = [created[name].session_uid for name in sorted(names & created.keys())]
-            yield from _guard_new_objects(context, settings, accepted, set(created), entering, fresh, result, end)
-    except (InputError, SceneChangedError) as error:
-        result.reason = str(error)
 
 
 def _users_of_meshes(references: Sequence[ObjectReference], names: Collection[str]) -> list[ObjectReference]:
@@ -252,68 +285,3 @@ def _users_of_meshes(references: Sequence[ObjectReference], names: Collection[st
         if reference.name in names and ob.type == "MESH":
             found.setdefault(ob.data.session_uid, reference)
     return list(found.values())
-
-
-def _guard_rebuilt(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    changes: Changes,
-    reference: ObjectReference,
-    result: GuardedResult,
-    end: float,
-) -> Steps[None]:
-    """Correct an extrusion, or a part that was added and did not come from an object that is gone, as in Join."""
-    before, after = accepted.state[reference.session_uid], read_object(reference.find())
-    added = None if changes.removed else find_new_part(before, after, read_edges(reference.find().data))
-    if added is None:
-        result.add((yield from correct_extrusion(context, settings, accepted, reference, end)))
-        return
-    source, known, corrected = find_copied(accepted, reference, added), accepted.known, False
-    if source is not None and after.points is not None:
-        origins = after.points[source]
-        if np.array_equal(after.points[added], origins):
-            result.reason = f"{reference.name}: the copy is in the place of its source; move it"
-            return
-        corrected = bool((yield from correct_part(context, settings, known, reference, added, origins, end)))
-    is_left = reference.name in fresh_objects(context, settings, known)
-    placed = is_left and (yield from place_part_freely(context, settings, known, reference, added, end))
-    result.wrote |= corrected or placed
-    if placed or corrected:
-        (result.placed if placed else result.corrected).append(reference.name)
-
-
-def _guard_new_objects(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    accepted: AcceptedScene,
-    created: set[str],
-    entering: list[int],
-    fresh: Sequence[FacePair],
-    result: GuardedResult,
-    end: float,
-) -> Steps[None]:
-    """Correct copies from the places of their originals, then place new objects that still intersect.
-
-    created: names of all new objects. entering: session numbers of those that intersect. fresh: their intersections.
-    """
-    present = read_state(context)
-    in_place = find_in_place(accepted, present, entering)
-    if in_place is not None:
-        result.reason = "{}: is in the place of {}; move it".format(*in_place)
-        return
-    originals = find_originals(accepted, present, entering)
-    through = {
-        frozenset({present[copy].reference.name, accepted.state[original].reference.name})
-        for copy, original in originals.items()
-    }
-    blocking = [pair for pair in fresh if frozenset(object_pair(pair)) not in through]
-    if originals and touches_others(blocking, created):
-        with suppress(StartIntersectsError):  # what the copy passes there, its original does not
-            result.add((yield from correct_copies(context, settings, accepted, originals, end)))
-        yield None
-        if not touches_others(accepted.known.fresh(find_intersections(context, settings)), created):
-            return
-    if (yield from place_freely(context, settings, accepted.known, created, end)):
-        result.wrote = True
-        result.placed += sorted(created)
