@@ -129,7 +129,7 @@ def with_other_data(ob: Any) -> None:
 
 
 @pytest.mark.parametrize("change", [mirrored_about_another, deformed, bevelled_by_a_profile, with_other_data])
-def test_what_may_differ_is_not_shared(change: Callable[[Any], None]) -> None:
+def test_a_mesh_that_may_differ_is_not_shared(change: Callable[[Any], None]) -> None:
     objects = linked("MIRROR", "SUBSURF", count=3)
     change(objects[1])
     bpy.context.view_layer.update()
