@@ -239,6 +239,16 @@ def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
         assert bone.rotation_euler.x == 0 and np.array_equal(evaluated(sheet), start)
 
 
+def test_collisions_stay_on_where_an_edit_that_began_without_them_opens_a_seam() -> None:
+    """Its start may intersect, so it does not begin again there."""
+    sheet_that_opens(PARTING)
+    edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001, interference=False), "rotate")
+    edit.drag(Motion(turn(0.1, "X", (0, 0, 0)), np.zeros(3)))
+    assert edit.write().passed and edit.set_interference(True) == ""
+    assert drag_turn(edit, 1.2).status != "unguarded"
+    assert edit.interference and edit.write().passed
+
+
 def test_an_edit_that_continues_with_an_open_seam_still_stops_at_obstacles() -> None:
     _, bone = sheet_that_opens(PARTING)
     add_cube("Box", (0, 0.2, 1.1), 0.2)

@@ -358,7 +358,12 @@ class BlenderEdit:
         return (yield from self.drag_to_steps(goal, time_budget))
 
     def _reopen(self, result: stiv.EditResult) -> Steps[bool]:
-        """Steps that begin again if an open seam stopped the edit. They return whether they did."""
+        """Steps that begin again if an open seam stopped the edit. They return whether they did.
+
+        An edit that began with collisions off does not: its start may intersect.
+        """
+        if not self._began_free:
+            return False
         begun = yield from self._late_seams.begin_again_steps(self.control_sets, result)
         if begun is not None:
             goal = self._goal
