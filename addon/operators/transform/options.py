@@ -56,7 +56,9 @@ class TransformOptions:
     )
     orient_matrix: FloatVectorProperty(size=9, default=(1, 0, 0, 0, 1, 0, 0, 0, 1), options={"HIDDEN", "SKIP_SAVE"})
     proportional: BoolProperty(
-        name="Proportional Editing", description="Move points near the selection with it, in Edit Mode"
+        name="Proportional Editing",
+        description="Move points near the selection with it, in Edit Mode",
+        options={"SKIP_SAVE"},
     )
     proportional_size: FloatProperty(
         name="Proportional Size",
@@ -64,14 +66,16 @@ class TransformOptions:
         subtype="DISTANCE",
         default=1.0,
         min=1e-6,
+        options={"SKIP_SAVE"},
     )
     proportional_falloff: EnumProperty(
         name="Proportional Falloff",
         items=[(name, name.replace("_", " ").title(), "") for name in FALLOFFS],
         default="SMOOTH",
+        options={"SKIP_SAVE"},
     )
     proportional_connected: BoolProperty(
-        name="Connected Only", description="Measure distances along the edges of the cage"
+        name="Connected Only", description="Measure distances along the edges of the cage", options={"SKIP_SAVE"}
     )
     responders: EnumProperty(name="Yields", items=RESPONDERS, default=OF_SCENE, options={"SKIP_SAVE"})
     interference: EnumProperty(name="Collisions", items=INTERFERENCE, default=OF_SCENE, options={"SKIP_SAVE"})
@@ -122,7 +126,10 @@ def make_influence(proportional: Proportional) -> stiv_blender.Influence | None:
 def changed_options(
     request: Request, proportional: Proportional, constraint: Constraint, scene: bpy.types.Scene
 ) -> dict[str, object]:
-    """The options at the end of a drag that differ from the defaults."""
+    """The options at the end of a drag that differ from the defaults, and the settings of proportional editing.
+
+    Those are given also while it is off: the redo panel then turns it on with the size of the scene.
+    """
     found: dict[str, object] = {}
     if request.interference != scene.stiv.interference:
         found["interference"] = "ON" if request.interference else "OFF"
@@ -132,8 +139,8 @@ def changed_options(
         found["constraint_axis"], found["orient_matrix"] = constraint.chosen, constraint.axes.ravel().tolist()
     if request.response != scene.stiv.object_response:
         found["response"] = request.response
-    if proportional.active:
-        found["proportional"] = True
+    if proportional.available:
+        found["proportional"] = proportional.on
         found["proportional_size"], found["proportional_falloff"] = proportional.size, proportional.falloff
         found["proportional_connected"] = proportional.connected
     return found

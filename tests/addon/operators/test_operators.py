@@ -222,6 +222,17 @@ def test_choices_of_a_drag_are_properties() -> None:
         bpy.ops.stiv.move(falloff="ODD")
 
 
+def test_a_drag_does_not_register_the_proportional_editing_of_the_last_one() -> None:
+    as_drags_do = "EXEC_DEFAULT", True  # with an undo step Blender recalls the last values of an operator
+    chosen = {"proportional": True, "proportional_size": 2.5, "proportional_falloff": "SHARP"}
+    bpy.ops.stiv.move(*as_drags_do, value=(1.0, 0.0, 0.0), **chosen, proportional_connected=True)
+    assert RecordingEdit.begun.motion.influence is not None
+    bpy.ops.stiv.move(*as_drags_do, value=(1.0, 0.0, 0.0))
+    assert RecordingEdit.begun.motion.influence is None
+    bpy.ops.stiv.move(*as_drags_do, value=(1.0, 0.0, 0.0), proportional=True)
+    assert RecordingEdit.begun.motion.influence == (1.0, "SMOOTH", False)
+
+
 def test_the_result_of_a_drag_is_reused_from_the_same_start(scene: Any) -> None:
     ended = np.eye(4)
     ended[:3, 3] = 0.0, 7.0, 0.0
