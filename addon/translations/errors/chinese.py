@@ -152,6 +152,7 @@ MESSAGES = {
     "{} cuts {} in {}, {}": "{} 与 {} 相交 ({})，{}",
     "{} cuts {}, {} faces, may only part": "{} 与 {} 相交，{} 个面，只能分开",
     "{} cuts {}, {} faces{}": "{} 与 {} 相交，{} 个面{}",
+    '{} depends on "{}"; disable it': "{}依赖于“{}”；请禁用它",
     '{} depends on "{}"; select both': "{}依赖于“{}”；请同时选择两者",
     "{} faces at joints cut into each other": "关节处的 {} 个面相互切入",
     "{} faces at joints may fold into each other": "关节处的 {} 个面可以相互折叠",

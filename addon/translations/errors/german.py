@@ -152,6 +152,7 @@ MESSAGES = {
     "{} cuts {} in {}, {}": "{} schneidet {} in {}, {}",
     "{} cuts {}, {} faces, may only part": "{} schneidet {}, {} Flächen, dürfen sich nur trennen",
     "{} cuts {}, {} faces{}": "{} schneidet {}, {} Flächen{}",
+    '{} depends on "{}"; disable it': '{} hängt von "{}" ab; deaktivieren',
     '{} depends on "{}"; select both': '{} hängt von "{}" ab; beide auswählen',
     "{} faces at joints cut into each other": "{} Flächen an Gelenken schneiden ineinander",
     "{} faces at joints may fold into each other": "{} Flächen an Gelenken dürfen sich ineinander falten",

@@ -152,6 +152,7 @@ MESSAGES = {
     "{} cuts {} in {}, {}": "{} と {} が交差 ({})、{}",
     "{} cuts {}, {} faces, may only part": "{} と {} が交差、面 {}。離れることだけできます",
     "{} cuts {}, {} faces{}": "{} と {} が交差、面 {}{}",
+    '{} depends on "{}"; disable it': "{} が「{}」に依存しています。無効にしてください",
     '{} depends on "{}"; select both': "{} が「{}」に依存しています。両方を選択してください",
     "{} faces at joints cut into each other": "関節の {} 面が互いに食い込んでいます",
     "{} faces at joints may fold into each other": "関節の {} 面は互いに折り重なることがあります",

@@ -152,6 +152,7 @@ MESSAGES = {
     "{} cuts {} in {}, {}": "{} 교차 {} ({}), {}",
     "{} cuts {}, {} faces, may only part": "{} 교차 {}, 면 {}개, 떨어질 수만 있음",
     "{} cuts {}, {} faces{}": "{} 교차 {}, 면 {}개{}",
+    '{} depends on "{}"; disable it': '{}이(가) "{}"에 의존함; 비활성화하세요',
     '{} depends on "{}"; select both': '{}이(가) "{}"에 의존함; 둘 다 선택하세요',
     "{} faces at joints cut into each other": "관절의 면 {}개가 서로 파고듦",
     "{} faces at joints may fold into each other": "관절의 면 {}개는 서로 접힐 수 있음",

@@ -192,8 +192,22 @@ def test_objects_that_modifiers_refer_to() -> None:
     add_modifier(other, "BOOLEAN", "Cut", object=cube)
     select(cube)
     accepted()
-    refused('Other: Boolean "Cut" depends on "Cube"', DEFORM)
+    refused('Other: Boolean "Cut" depends on "Cube"; disable it', DEFORM)
     other.modifiers[0].show_viewport = other.modifiers[0].show_render = False
+    accepted()
+    accepted(DEFORM)
+
+
+def test_a_projection_names_a_way_out_for_either_object() -> None:
+    target, wrapped = add_cube("Target"), add_cube("Wrapped", (5, 0, 0))
+    wrap = add_modifier(wrapped, "SHRINKWRAP", "Wrap", target=target)
+    select(wrapped)
+    refused('Wrapped: Shrinkwrap "Wrap" projects onto "Target"; edit that', DEFORM)
+    select(target)
+    accepted()
+    bpy.ops.object.mode_set(mode="EDIT")
+    refused('Wrapped: Shrinkwrap "Wrap" depends on "Target"; disable it')
+    wrap.show_viewport = wrap.show_render = False
     accepted()
 
 

@@ -210,10 +210,8 @@ def _check_independent(
             in_lattices.add(name)
     for name in sorted(deforming & in_groups):
         raise InputError(f"{name}: is deformed, and its parent moves; deselect one")
-    check_dependents(
-        deforming | in_groups, sorted({mesh.owner.name for mesh in meshes} - in_lattices - following),
-        evaluations_of(meshes),
-    )  # fmt: skip
+    others = sorted({mesh.owner.name for mesh in meshes} - in_lattices - following)
+    check_dependents(in_groups, deforming, others, evaluations_of(meshes))
     check_instances(deforming | in_groups | in_lattices | following, meshes, groups)
     _check_children(deforming, in_groups, meshes)
 

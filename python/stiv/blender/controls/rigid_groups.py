@@ -98,18 +98,21 @@ def add_followers(
     return result
 
 
-def check_dependents(moved: Iterable[str], names: Iterable[str], evaluations: Collection[str]) -> None:
+def check_dependents(
+    moved: Collection[str], deforming: Collection[str], names: Iterable[str], evaluations: Collection[str]
+) -> None:
     """Refuse to change objects on which other objects depend through modifiers and constraints in these evaluations.
 
-    Raises InputError.
+    moved, deforming: names of the objects that move as a whole, and of those whose shape changes. A selection of both
+    objects helps only if they move as a whole. Raises InputError.
     """
-    changing = set(moved)
+    ways_out = {**dict.fromkeys(moved, "select both"), **dict.fromkeys(deforming, "disable it")}
     for name in names:
-        if name in changing:
+        if name in ways_out:
             continue
         for dependency in dependencies(bpy.data.objects[name], evaluations):
-            if dependency.used in changing:
-                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; select both')
+            if way_out := ways_out.get(dependency.used):
+                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; {way_out}')
 
 
 def check_instances(moved: set[str], meshes: Iterable[VisibleMesh], groups: Iterable[RigidGroup] = ()) -> None:
