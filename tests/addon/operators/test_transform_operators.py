@@ -306,3 +306,12 @@ def test_auto_keying_inserts_keyframes_for_objects() -> None:
     assert cube.location.x == reached == pytest.approx(WALL_FACE - 0.5, abs=0.01)
     paths = {curve.data_path for curve in own_curves(cube)}
     assert paths == {"location"}
+
+
+def test_auto_keying_can_use_the_active_keying_set_alone() -> None:
+    cube = box("Box", (0.0, 0.0, 0.0), (0.5, 0.5, 0.5))
+    bpy.context.scene.tool_settings.use_keyframe_insert_auto = True
+    bpy.context.scene.tool_settings.use_keyframe_insert_keyingset = True
+    bpy.context.scene.keying_sets_all.active = bpy.context.scene.keying_sets_all["Rotation"]
+    assert bpy.ops.stiv.move("EXEC_DEFAULT", True, value=(0.5, 0, 0)) == {"FINISHED"}
+    assert {curve.data_path for curve in own_curves(cube)} == {"rotation_euler"}

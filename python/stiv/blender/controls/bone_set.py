@@ -3,20 +3,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
 
 from stiv import InputError
+from stiv.blender.controls.auto_keying import insert_auto_keyframes
 from stiv.blender.controls.bone_channels import LOCATION, ROTATION, SCALE, BoneChannels, MirroredBone
 from stiv.blender.controls.control_set import ControlSet, GoalRule, Participant, UnlimitedGoal, Writer
 from stiv.blender.controls.garments import Garment, stacked_weights
 from stiv.blender.controls.joined_seams import join_notes
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.posed_surface import BoneScalars, PosedSurface
-from stiv.blender.scene.animation_curves import keyframe_options
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.driver_cycles import find_driver_cycle
 from stiv.blender.scene.evaluated_scene import VisibleMesh
@@ -202,19 +202,15 @@ class BoneWriter:
 
     def insert_keyframes(self, context: bpy.types.Context) -> None:
         """Insert keyframes for the bones that the goal moves, and for others that have changed."""
-        options = keyframe_options(context)
+        found: list[tuple[bpy.types.PoseBone, set[str]]] = []
         for each in self.scalars.bones:
             bone = each.find()
             always = {each.property_of(self.keyed[-1], bone)} if each.selected else set()
-            _insert(bone, always.union(each.stored.changed(bone)), options)
+            found.append((bone, always.union(each.stored.changed(bone))))
             if each.mirrored is not None:
                 other = bone.id_data.pose.bones[each.mirrored.name]
-                _insert(other, always.union(each.mirrored.stored.changed(other)), options)
-
-
-def _insert(bone: bpy.types.PoseBone, names: Collection[str], options: set[str]) -> None:
-    for name in sorted(names):
-        bone.keyframe_insert(name, group=bone.name, options=options)
+                found.append((other, always.union(each.mirrored.stored.changed(other))))
+        insert_auto_keyframes(context, found)
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+from stiv.blender.controls.auto_keying import insert_auto_keyframes
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.object_transform import ObjectTransform, write_transform
 from stiv.blender.controls.placement_motion import PlacementMotion
 from stiv.blender.controls.transform_locks import restore_locked
-from stiv.blender.scene.animation_curves import keyframe_options
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.references import ObjectReference
 
@@ -46,10 +46,7 @@ class PlacementWriter:
 
     def insert_keyframes(self, context: bpy.types.Context) -> None:
         """Insert keyframes for what has changed since the start."""
-        options = keyframe_options(context)
-        for ob, start in self._objects():
-            for name in start.changed(ob):
-                ob.keyframe_insert(name, group="Object Transforms", options=options)
+        insert_auto_keyframes(context, [(ob, start.changed(ob)) for ob, start in self._objects()])
 
     def _objects(self) -> list[tuple[bpy.types.Object, ObjectTransform]]:
         return [(reference.find(), start) for reference, start in zip(self.references, self.starts, strict=True)]
