@@ -326,6 +326,18 @@ def test_a_shape_that_depends_on_its_scale_unnoticed_is_refused_with_a_way_out(m
     assert snapshot() == before
 
 
+def test_a_simulated_object_that_does_not_move_along_names_its_simulation() -> None:
+    ob = simulated()
+    select(ob)
+    before = snapshot()
+    edit = BlenderEdit.begin(bpy.context, EditSettings(), "move")
+    edit.drag(shift(0, 0, -0.5))
+    report = edit.write()
+    assert report.message == 'Piece: Cloth "Fall" simulates it; go to its start frame'
+    edit.restore()
+    assert snapshot() == before
+
+
 @pytest.mark.parametrize("way", ["deforming", "edit mode"])
 def test_an_edit_stops_where_the_topology_changes(way: str) -> None:
     ob = add_sheet()

@@ -26,8 +26,7 @@ from building import (
 import stiv
 from stiv.blender import BlenderEdit, EditSettings
 from stiv.blender.controls.editable import REASONS
-from stiv.blender.controls.stack_refusals import SIMULATIONS
-from stiv.blender.scene.modifier_stack import MODIFIER_REASONS
+from stiv.blender.scene.modifier_stack import MODIFIER_REASONS, SIMULATIONS
 
 DEFORM = EditSettings(object_response="deform", guard="viewport")
 NAME = "x" * 12  # of an object or a modifier

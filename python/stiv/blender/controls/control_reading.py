@@ -29,14 +29,14 @@ from stiv.blender.controls.rigid_groups import (
 )
 from stiv.blender.controls.rigid_placement import make_rigid_set
 from stiv.blender.controls.shared_meshes import other_users
-from stiv.blender.controls.stack_refusals import SIMULATIONS, no_surface_error
+from stiv.blender.controls.stack_refusals import no_surface_error
 from stiv.blender.controls.subdivision import stack_deformations
 from stiv.blender.controls.transform_locks import drop_locked
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.dependencies import dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh, evaluation_tolerance
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
-from stiv.blender.scene.modifier_stack import UnsupportedStackError, modifier_error
+from stiv.blender.scene.modifier_stack import UnsupportedStackError, modifier_error, simulation_error
 from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 from stiv.task import Steps, Turns, run
@@ -277,8 +277,7 @@ def _refuse_difference(control_set: ControlSet, mesh: VisibleMesh | None, how: s
     ob = bpy.data.objects[name]
     if control_set.posed is not None:  # to apply its Armature modifier would end the posing
         raise InputError(f"{name}: its pose cannot be followed ({how}); check bone constraints")
-    for modifier in ob.modifiers:
-        if modifier.type in SIMULATIONS and is_active(modifier, ob, VIEWPORT):
-            raise modifier_error(ob, modifier.name, "simulated")
+    if error := simulation_error(ob, VIEWPORT):
+        raise error
     last = next((each.name for each in reversed(ob.modifiers) if is_active(each, ob, VIEWPORT)), "")
     raise UnsupportedStackError(f"{name}: its modifiers cannot be followed ({how}); apply them", name, last)

@@ -12,10 +12,9 @@ from stiv import InputError
 from stiv.blender.scene.arrays import Singles
 from stiv.blender.scene.evaluations import VIEWPORT, is_active
 from stiv.blender.scene.mesh_reading import read_cage
-from stiv.blender.scene.modifier_stack import modifier_error
+from stiv.blender.scene.modifier_stack import SIMULATIONS, modifier_error
 from stiv.blender.scene.stack_twin import EvaluatedStack, StackTwin, open_twin
 
-SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 SMALL = (0.0, 0.001, 0.003)  # moves that may not change the topology, in sizes of the mesh
 Comparison = Callable[[EvaluatedStack, EvaluatedStack], bool]
 LARGE = 0.1  # moves that may not flip quads, as a drag will

@@ -16,6 +16,7 @@ from stiv.blender.scene.references import ObjectReference, modifier_title
 
 # Modifiers that change neither the positions nor the number and order of vertices. Others are found by trial.
 POSITION_PRESERVING = frozenset({"TRIANGULATE", "WEIGHTED_NORMAL", "NORMAL_EDIT", "UV_PROJECT", "UV_WARP"})
+SIMULATIONS = frozenset({"CLOTH", "SOFT_BODY", "FLUID", "DYNAMIC_PAINT"})
 KNOWN = POSITION_PRESERVING | {"SUBSURF", "LATTICE"}
 
 # Why a modifier is refused, and a way out; the message begins with the object, and the modifier's type and name.
@@ -137,6 +138,14 @@ def modifier_error(ob: bpy.types.Object, modifier: str, reason: str, other: str 
     """The error for a modifier by its name; reason: a key of MODIFIER_REASONS, other: the object that it mentions."""
     text = MODIFIER_REASONS[reason].format(other=other)
     return UnsupportedStackError(f"{ob.name}: {modifier_title(ob.modifiers[modifier])} {text}", ob.name, modifier)
+
+
+def simulation_error(ob: bpy.types.Object, evaluation: str) -> InputError | None:
+    """The error for an object that a modifier simulates in an evaluation; None for other objects."""
+    for modifier in ob.modifiers:
+        if modifier.type in SIMULATIONS and is_active(modifier, ob, evaluation):
+            return modifier_error(ob, modifier.name, "simulated")
+    return None
 
 
 def _stage(ob: bpy.types.Object, modifier: bpy.types.Modifier, scene: bpy.types.Scene, evaluation: str) -> Stage | None:

@@ -16,6 +16,7 @@ from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
+from stiv.blender.scene.modifier_stack import simulation_error
 from stiv.blender.scene.open_evaluations import OpenEvaluations, open_evaluations
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.triangulation_flips import (
@@ -252,6 +253,8 @@ def _displacement_message(assembly: Assembly, accepted: Floats, meshes: Sequence
         whole = accepted[control_set] if assembly.seams[number] is None else accepted[assembly.vertices(number)]
         difference = largest_difference(meshes[number], whole)
         if difference and _exceeds_tolerance(difference, accepted[control_set]):  # mostly 0 for obstacles
+            if error := simulation_error(mesh.owner.find(), VIEWPORT):
+                return str(error)
             if len(mesh.owner.find().modifiers) > 0:
                 return f"{mesh.owner.name}: its modifiers cannot be followed ({difference:.3g}); apply them"
             return f"{mesh.owner.name}: Blender shows it {difference:.3g} away from the solved position"
