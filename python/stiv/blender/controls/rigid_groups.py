@@ -106,13 +106,14 @@ def check_dependents(
     moved, deforming: names of the objects that move as a whole, and of those whose shape changes. A selection of both
     objects helps only if they move as a whole. Raises InputError.
     """
-    ways_out = {**dict.fromkeys(moved, "select both"), **dict.fromkeys(deforming, "disable it")}
     for name in names:
-        if name in ways_out:
+        if name in moved or name in deforming:
             continue
         for dependency in dependencies(bpy.data.objects[name], evaluations):
-            if way_out := ways_out.get(dependency.used):
-                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; {way_out}')
+            if dependency.used in deforming:
+                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable it')
+            if dependency.used in moved:
+                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; select both')
 
 
 def check_instances(moved: set[str], meshes: Iterable[VisibleMesh], groups: Iterable[RigidGroup] = ()) -> None:
