@@ -16,16 +16,25 @@ from .decision import UndoStep
 # A line of the list as Blender prints it, the only access to it:
 # "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
 _ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'\r?$", re.MULTILINE)
+_ACTIVE_OF_FILE = re.compile(r"^\[\*[^]]*\]\s*\d+ \{\w+\} type='Global Undo'", re.MULTILINE)
 
 
 def active_step() -> UndoStep | None:
     """The active step; None if undo is off or standard output cannot be redirected."""
-    windows = bpy.context.window_manager.windows
-    if not len(windows):
-        return None
-    with bpy.context.temp_override(window=windows[0]):
-        has_stack = bpy.ops.ed.undo.poll()  # without a stack, as in background mode, printing it crashes
-    return parse(_printed()) if has_stack else None
+    return parse(_stack())
+
+
+def complete_active(window: bpy.types.Window) -> None:
+    """Store the whole file in the active step, if that is a step of an edit mode, which holds the edited data alone.
+
+    Data-blocks that come or go, as copies for an evaluation do, let Blender store the whole file with its next step. To
+    undo that one then loads the file of an older step, without what has changed since, such as a modifier's settings.
+    """
+    text = _stack()
+    step = parse(text)
+    if step is not None and not _ACTIVE_OF_FILE.search(text):
+        bpy.data.texts.remove(bpy.data.texts.new("STIV"))
+        replace_active(window, step[2])
 
 
 def parse(text: str) -> UndoStep | None:
@@ -63,6 +72,16 @@ def push(window: bpy.types.Window, name: str) -> None:
     """Add a step with the current state."""
     with bpy.context.temp_override(window=window):
         bpy.ops.ed.undo_push(message=name)
+
+
+def _stack() -> str:
+    """All steps as Blender prints them; "" if undo is off."""
+    windows = bpy.context.window_manager.windows
+    if not len(windows):
+        return ""
+    with bpy.context.temp_override(window=windows[0]):
+        has_stack = bpy.ops.ed.undo.poll()  # without a stack, as in background mode, printing it crashes
+    return _printed() if has_stack else ""
 
 
 def _printed() -> str:

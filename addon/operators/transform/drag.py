@@ -12,6 +12,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
+from ...guard import undo_steps
 from ...modal.axis_lock import AxisLock
 from ...modal.drag_calls import DragCalls
 from ...modal.drag_end import DragEnded, Progress
@@ -244,6 +245,9 @@ class DragOperator(Mixin):
         )
         edit, result, report = drag.edit, drag.result, drag.writer.report
         if edit is not None and result is not None and report is not None:
+            if context.mode.startswith("EDIT"):  # the step below follows that of the start
+                with edit.start_shown():
+                    undo_steps.complete_active(context.window)
             insert_keyframes(context, edit)
             outcome = self._outcome(edit, result)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report, outcome=outcome)

@@ -9,6 +9,8 @@ import pytest
 
 pytest.importorskip("bpy")
 
+import bpy
+
 from stiv_addon.guard import undo_steps
 
 
@@ -26,3 +28,16 @@ def test_the_active_step_is_read_from_lines_of_any_system() -> None:
     text = "Undo 2 Steps\r\n[ # ]   0 {000001F2A} type='Global Undo', name='Original'\r\n"
     text += "[*#M]   1 {000001F2B} type='Global Undo', name='Move'\r\n"
     assert undo_steps.parse(text) == (1, "000001F2B", "Move")
+
+
+@pytest.mark.parametrize(("kind", "is_replaced"), [("Edit Mesh", True), ("Edit Curve", True), ("Global Undo", False)])
+def test_only_a_step_of_an_edit_mode_is_completed(
+    monkeypatch: pytest.MonkeyPatch, kind: str, is_replaced: bool
+) -> None:
+    """A global one holds the whole file."""
+    replaced: list[str] = []
+    text = f"[    ]   0 {{0x1}} type='Global Undo', name='Original'\n[*   ]   1 {{0x2}} type='{kind}', name='Levels'\n"
+    monkeypatch.setattr(undo_steps, "_stack", lambda: text)
+    monkeypatch.setattr(undo_steps, "replace_active", lambda window, name: replaced.append(name))
+    undo_steps.complete_active(bpy.context.window)
+    assert replaced == (["Levels"] if is_replaced else [])

@@ -52,6 +52,10 @@ def test_edit_mode_moves_the_selected_vertices_alone() -> None:
     still = [index for index in range(25) if index not in chosen]
     assert all(tuple(grid.data.vertices[index].co)[2] == 0 for index in still)
     assert bpy.context.mode == "EDIT_MESH"
+    after, shown = snapshot(), evaluated(grid)
+    with edit.start_shown():
+        assert snapshot() == before and evaluated(grid)[:, 2].max() == 1
+    assert snapshot() == after and np.array_equal(evaluated(grid), shown) and edit.is_shown()
     edit.restore()
     assert snapshot() == before
     edit.drag(shift(z=0.5))

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -26,7 +27,7 @@ from stiv.blender.edit.results import (
     round_to_storage,
     unguarded_result,
 )
-from stiv.blender.edit.sessions import restore_controls, split_controls
+from stiv.blender.edit.sessions import restore_controls, split_controls, write_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot_steps
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
@@ -455,6 +456,16 @@ class BlenderEdit:
         SceneChangedError.
         """
         return self._writer.write_shown()
+
+    @contextmanager
+    def start_shown(self) -> Iterator[None]:
+        """Blender shows the start inside, and the present state again afterwards. Raises SceneChangedError."""
+        present = self.controls
+        restore_controls(self.control_sets)
+        try:
+            yield
+        finally:
+            write_controls(self.control_sets, present, self._start)
 
     def finish(self) -> None:
         """Leave the session to the next edit, which uses it if nothing else changes. End the use of this edit."""
