@@ -16,12 +16,19 @@ from .decision import UndoStep
 # A line of the list as Blender prints it, the only access to it:
 # "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
 _ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'\r?$", re.MULTILINE)
+_LATER = re.compile(r"^\[\*.*^\[[^S\]]*\]", re.MULTILINE | re.DOTALL)  # a step after it that undo does not skip
 _ACTIVE_OF_FILE = re.compile(r"^\[\*[^]]*\]\s*\d+ \{\w+\} type='Global Undo'", re.MULTILINE)
 
 
 def active_step() -> UndoStep | None:
     """The active step; None if undo is off or standard output cannot be redirected."""
     return parse(_stack())
+
+
+def complete_last(window: bpy.types.Window) -> None:
+    """`complete_active`, unless steps could be redone: these would go."""
+    if not _LATER.search(_stack()):
+        complete_active(window)
 
 
 def complete_active(window: bpy.types.Window) -> None:

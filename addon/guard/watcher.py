@@ -33,6 +33,7 @@ class Watch:
         frame: the frame of the last observation.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
         correction: the one that runs now; its writes are not observed.
+        copies: made for evaluations until the last test.
     """
 
     def __init__(self) -> None:
@@ -46,6 +47,7 @@ class Watch:
         self.uncorrected = 0
         self.working = False
         self.correction: _Correction | None = None
+        self.copies = 0
 
 
 @dataclass
@@ -221,6 +223,9 @@ def _finish(
     watch = _watch
     if outcome.wrote:
         _store_in_history(window, action, seen)
+    elif context.mode.startswith("EDIT") and watch.copies != stiv_blender.copies_made():
+        undo_steps.complete_last(window)  # for the undo of the next tool
+    watch.copies = stiv_blender.copies_made()
     first = watch.record.accepted is None
     left = watch.record.accept(context, outcome, restored) or bool(outcome.reason)
     if left and not first and is_new_result(watch.guard, seen, action):

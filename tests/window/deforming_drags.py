@@ -146,7 +146,7 @@ def piece_with_modifiers(window: Window) -> Steps:
 def undo_keeps_what_was_changed_in_edit_mode(window: Window) -> Steps:
     """Ctrl+Z after a drag takes back the drag alone: not the modifier's levels, changed since Edit Mode began."""
     yield from prepared(window, scenes.add_cage, "Cage", "EDIT")
-    set_levels(1, 3)
+    scenes.set_levels(1, 3)
     with window.override():
         bpy.ops.ed.undo_push(message="Levels")
     before = scenes.evaluated_extent("Cage")
@@ -156,23 +156,11 @@ def undo_keeps_what_was_changed_in_edit_mode(window: Window) -> Steps:
         after = scenes.evaluated_extent("Cage")
         assert after != before
         yield from window.undo()
-        assert (bpy.context.mode, levels(), scenes.evaluated_extent("Cage")) == ("EDIT_MESH", (1, 3), before)
+        assert (bpy.context.mode, scenes.levels(), scenes.evaluated_extent("Cage")) == ("EDIT_MESH", (1, 3), before)
         yield from window.redo()
-        assert (levels(), scenes.evaluated_extent("Cage")) == ((1, 3), after)
+        assert (scenes.levels(), scenes.evaluated_extent("Cage")) == ((1, 3), after)
         yield from window.undo()
-        assert (levels(), scenes.evaluated_extent("Cage")) == ((1, 3), before)
-
-
-def levels() -> tuple[int, int]:
-    """The levels of the cage's subdivision in the viewport and in the render."""
-    modifier = bpy.data.objects["Cage"].modifiers[0]
-    return modifier.levels, modifier.render_levels
-
-
-def set_levels(viewport: int, render: int) -> None:
-    """Set both."""
-    modifier = bpy.data.objects["Cage"].modifiers[0]
-    modifier.levels, modifier.render_levels = viewport, render
+        assert (scenes.levels(), scenes.evaluated_extent("Cage")) == ((1, 3), before)
 
 
 _ALL = (

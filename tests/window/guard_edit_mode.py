@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import bpy
 import scenes
 from guard_scenarios import at_rest, guarded, with_tool
 from playing import INTO_WALL, expect_free, expect_near
@@ -13,6 +14,10 @@ from simulation import Steps, Window
 def guard_cage(window: Window) -> Steps:
     """Vertices of a cage in Edit Mode with Blender's G."""
     yield from guarded(window, scenes.add_cage, "Cage", "EDIT")
+    scenes.set_levels(2, 3)
+    with window.override():
+        bpy.ops.ed.undo_push(message="Levels")
+    yield from at_rest(window)
     before = scenes.evaluated_extent("Cage")
     yield from with_tool(window, "G", INTO_WALL)
     expect_near(scenes.evaluated_extent("Cage"), WALL_FACE, 0.1, "the surface at the wall")
@@ -22,6 +27,7 @@ def guard_cage(window: Window) -> Steps:
     yield from window.undo()
     yield from at_rest(window)
     expect_near(scenes.evaluated_extent("Cage"), before, 1e-6, "the surface after undo")
+    assert scenes.levels() == (2, 3)  # set since Edit Mode began, and not part of the mesh
     yield from window.redo()
     yield from at_rest(window)
     assert scenes.evaluated_extent("Cage") < WALL_FACE

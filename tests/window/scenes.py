@@ -113,6 +113,18 @@ def add_cage() -> Any:
     return cage
 
 
+def levels() -> tuple[int, int]:
+    """The levels of the cage's subdivision in the viewport and in the render."""
+    modifier = bpy.data.objects["Cage"].modifiers[0]
+    return modifier.levels, modifier.render_levels
+
+
+def set_levels(viewport: int, render: int) -> None:
+    """Set both."""
+    modifier = bpy.data.objects["Cage"].modifiers[0]
+    modifier.levels, modifier.render_levels = viewport, render
+
+
 def add_ball() -> Any:
     """A sphere of triangles."""
     return add_mesh("Ball", lambda content: bmesh.ops.create_icosphere(content, subdivisions=3, radius=HALF))

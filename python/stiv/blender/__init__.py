@@ -41,6 +41,7 @@ from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_sce
 from stiv.blender.repair.reshaping import ReshapeReport
 from stiv.blender.repair.separation import SeparationReport, separate, separate_steps
 from stiv.blender.scene.elements import Element, FacePair, count_faces
+from stiv.blender.scene.evaluation_copies import copies_made
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.lattice_reading import read_selected_lattice_points
@@ -122,6 +123,7 @@ __all__ = [
     "compare",
     "contact_region",
     "contract_scene",
+    "copies_made",
     "correct_after_tool",
     "count_faces",
     "drop",

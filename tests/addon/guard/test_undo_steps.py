@@ -41,3 +41,17 @@ def test_only_a_step_of_an_edit_mode_is_completed(
     monkeypatch.setattr(undo_steps, "replace_active", lambda window, name: replaced.append(name))
     undo_steps.complete_active(bpy.context.window)
     assert replaced == (["Levels"] if is_replaced else [])
+
+
+@pytest.mark.parametrize(("later", "is_replaced"), [("", True), ("[   S]", True), ("[    ]", False), ("[ #  ]", False)])
+def test_a_step_before_others_is_completed_only_for_a_new_one(
+    monkeypatch: pytest.MonkeyPatch, later: str, is_replaced: bool
+) -> None:
+    """A replaced step ends what could be redone."""
+    replaced: list[str] = []
+    text = "[ #M ]   0 {0x1} type='Global Undo', name='Original'\n[*   ]   1 {0x2} type='Edit Mesh', name='A'\n"
+    text += f"{later}   2 {{0x3}} type='Edit Mesh', name='[Move]'\n" if later else ""
+    monkeypatch.setattr(undo_steps, "_stack", lambda: text)
+    monkeypatch.setattr(undo_steps, "replace_active", lambda window, name: replaced.append(name))
+    undo_steps.complete_last(bpy.context.window)
+    assert replaced == (["A"] if is_replaced else [])

@@ -28,11 +28,21 @@ SCENE_SETTINGS = ("frame_current", "frame_subframe", "gravity", "use_gravity")
 TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_subdivision")
 
 
+_count = 0
+
+
+def copies_made() -> int:
+    """Number of evaluations whose objects were copied since Blender began. Blender's undo stores more after each."""
+    return _count
+
+
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
     def __init__(self, home: bpy.types.Scene, evaluation: str, own_data: Collection[bpy.types.Object] = ()) -> None:
         """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too."""
+        global _count
+        _count += 1
         self._evaluation = evaluation
         self._own_data = frozenset(ob.session_uid for ob in own_data)
         self._made: list[bpy.types.ID] = []
