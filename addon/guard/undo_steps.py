@@ -15,20 +15,13 @@ from .decision import UndoStep
 
 # A line of the list as Blender prints it, the only access to it:
 # "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
-_ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='[^']*', name='(.*)'\r?$", re.MULTILINE)
-_LATER = re.compile(r"^\[\*.*^\[[^S\]]*\]", re.MULTILINE | re.DOTALL)  # a step after it that undo does not skip
-_ACTIVE_OF_FILE = re.compile(r"^\[\*[^]]*\]\s*\d+ \{\w+\} type='Global Undo'", re.MULTILINE)
+_ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='([^']*)', name='(.*)'\r?$", re.MULTILINE)
+_LATER = re.compile(r"^\[\*.*^\[[^S\]]*\]", re.MULTILINE | re.DOTALL)  # a step after the active one that can be redone
 
 
 def active_step() -> UndoStep | None:
     """The active step; None if undo is off or standard output cannot be redirected."""
     return parse(_stack())
-
-
-def complete_last(window: bpy.types.Window) -> None:
-    """`complete_active`, unless steps could be redone: these would go."""
-    if not _LATER.search(_stack()):
-        complete_active(window)
 
 
 def complete_active(window: bpy.types.Window) -> None:
@@ -37,17 +30,20 @@ def complete_active(window: bpy.types.Window) -> None:
     Data-blocks that come or go, as copies for an evaluation do, let Blender store the whole file with its next step. To
     undo that one then loads the file of an older step, without what has changed since, such as a modifier's settings.
     """
+    _complete(window, _stack())
+
+
+def complete_last(window: bpy.types.Window) -> None:
+    """`complete_active`, unless steps could be redone: these would go."""
     text = _stack()
-    step = parse(text)
-    if step is not None and not _ACTIVE_OF_FILE.search(text):
-        bpy.data.texts.remove(bpy.data.texts.new("STIV"))
-        replace_active(window, step[2])
+    if not _LATER.search(text):
+        _complete(window, text)
 
 
 def parse(text: str) -> UndoStep | None:
     """The active step of a printed list."""
     found = _ACTIVE.search(text)
-    return None if found is None else (int(found[1]), found[2], found[3])
+    return None if found is None else (int(found[1]), found[2], found[4])
 
 
 def replace_active(window: bpy.types.Window, name: str) -> None:
@@ -79,6 +75,13 @@ def push(window: bpy.types.Window, name: str) -> None:
     """Add a step with the current state."""
     with bpy.context.temp_override(window=window):
         bpy.ops.ed.undo_push(message=name)
+
+
+def _complete(window: bpy.types.Window, text: str) -> None:
+    found = _ACTIVE.search(text)
+    if found is not None and found[3] != "Global Undo":
+        bpy.data.texts.remove(bpy.data.texts.new("STIV"))
+        replace_active(window, found[4])
 
 
 def _stack() -> str:

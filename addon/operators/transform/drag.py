@@ -245,7 +245,7 @@ class DragOperator(Mixin):
         )
         edit, result, report = drag.edit, drag.result, drag.writer.report
         if edit is not None and result is not None and report is not None:
-            if context.mode.startswith("EDIT"):  # the step below follows that of the start
+            if context.mode.startswith("EDIT"):  # undo returns to the step of the start
                 with edit.start_shown():
                     undo_steps.complete_active(context.window)
             insert_keyframes(context, edit)

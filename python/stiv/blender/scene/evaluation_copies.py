@@ -32,7 +32,7 @@ _count = 0
 
 
 def copies_made() -> int:
-    """Number of evaluations whose objects were copied since Blender began. Blender's undo stores more after each."""
+    """How often objects were copied for an evaluation. Blender's next undo step then stores the whole file."""
     return _count
 
 
