@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A quad that bends until Blender flips its diagonal, with a post in the place of the flip."""
 
+from functools import partial
 from itertools import count
 from types import SimpleNamespace
 from typing import Any
@@ -12,7 +13,7 @@ from building import add, add_cube, edit_mode, evaluated, mesh, select, shift
 
 import stiv
 from stiv import deadlines
-from stiv.blender import BlenderEdit, EditSettings, Task, check_scene, read_surface
+from stiv.blender import BlenderEdit, EditSettings, check_scene, read_surface
 from stiv.blender.edit import state_writer
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -168,24 +169,39 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
     assert found[True][1] <= found[False][1]
 
 
+def write_cancelled(edit: BlenderEdit, before: int) -> tuple[state_writer.WriteReport, int]:
+    """The report of a write that is cancelled after some steps, and the number of all."""
+    steps, token, number = edit.write_steps(), stiv.CancelToken(), 0
+    resume = partial(next, steps)
+    while True:
+        if number == before:
+            token.cancel()
+        try:
+            step = resume()
+        except StopIteration as end:
+            return end.value, number
+        number += 1
+        try:
+            resume = partial(steps.send, token.cancelled if step is None else step.run(cancel=token))
+        except stiv.CancelledError as error:
+            resume = partial(steps.throw, error)
+
+
 def test_a_write_that_is_cancelled_ends_at_a_state_that_passes() -> None:
     """At any time: while a session with the flipped triangles is made, while it solves, or in the search."""
-    for turns in range(7):
+    for before in range(100):
         bpy.ops.wm.read_factory_settings(use_empty=True)
         quad = add_quad(0)
         add_post()
         edit = begin_with_wings(quad)
-        for height in np.linspace(0.1, 2, 20):
-            edit.drag(shift(z=height))
-        task = Task(edit.write_steps())
-        ended = any(task.advance() for _ in range(turns))
-        task.cancel()
-        while not task.advance(0.01):
-            pass
+        edit.drag(shift(z=2))
+        report, steps = write_cancelled(edit, before)
         assert check_scene(bpy.context).pairs == () and edit.is_shown()
-        if ended:
+        if report.result is not None:
+            assert (report.result.status == "cancelled") == (before < steps)
+        if before >= steps:
             break
-    assert turns > 1
+    assert before > 2
 
 
 def test_a_drag_past_the_post_stops_before_the_flip_and_returns() -> None:

@@ -151,14 +151,15 @@ class EditSolver:
             self.session.restore(controls, goal)
         self.trail = Trail(controls, goal)
 
-    def retry_with(self, flips: Sequence[FaceTriangles], end: float) -> Steps[bool]:
+    def retry_with(self, flips: Sequence[FaceTriangles], end: float) -> Steps[list[stiv.EditResult] | None]:
         """Steps that add flipped triangles, go back to the last state that is free with them, and repeat the later
         calls from there; after the deadline `end`, only the last drag, and that shortly.
 
-        They return False, with nothing changed, if there are no flips, or no state of the trail is free with them.
+        They return the results of all calls since the last written state, those that were cancelled as well; or None,
+        with nothing changed, if there are no flips, or no state of the trail is free with them.
         """
         if not flips:
-            return False
+            return None
         assembly = add_triangles(self.assembly, flips)
 
         def is_free(state: AcceptedState) -> bool:
@@ -167,18 +168,19 @@ class EditSolver:
 
         state = yield from find_latest_steps(self.trail.states(), is_free, end)
         if state is None:
-            return False
+            return None
         goal = self.trail.goal_at(state)
         yield from self._open_session(assembly, state.controls)
         self.session.restore(state.controls, goal)
         calls = self.trail.truncate_at(state)
+        results = [call.result for call in self.trail.calls]
         last = max((number for number, call in enumerate(calls) if call.goal is not None), default=0)
         for number, call in enumerate(calls):
             is_late = is_over(end)
             if number == last or not is_late:
                 budget = min(LAST_DRAG_TIME, self._settings.time_budget) if is_late else time_left(end)
-                yield from self.solve(call.goal, time_budget=budget or None)
-        return True
+                results.append((yield from self.solve(call.goal, time_budget=budget or None)))
+        return results
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
         """Open a session. At its first start, objects may intersect themselves and those that move with them."""

@@ -150,20 +150,20 @@ class StateWriter:
         """
         end = deadline_after(self._settings.time_budget) if end is None else end
         verification = self._write_session()
-        solved_again = False
+        solved: list[stiv.EditResult] = []
         for _ in range(MAX_FLIP_RETRIES):
-            if verification.passed or (solved_again and is_over(end)):
+            if verification.passed or (solved and is_over(end)):
                 break
             self.write(self._solver.trail.written)
             try:
-                is_solved = yield from self._solver.retry_with(verification.flips, end)
+                results = yield from self._solver.retry_with(verification.flips, end)
             except stiv.CancelledError:  # while the session with the flips was made; the old one stays
-                is_solved = False
-            if not is_solved:
+                results = None
+            if results is None:
                 break
-            solved_again = True
+            solved = results
             verification = self._write_session()
-        result = merge_results([call.result for call in self._solver.trail.calls]) if solved_again else None
+        result = merge_results(solved) if solved else None
         if not verification.passed and not (yield from self._passes_nudged(goal, end)):
             return (yield from self._fall_back(goal, verification, result, end))
         session = self._solver.session
