@@ -20,7 +20,7 @@ def headline(pairs: Pairs, translate: Translate = str) -> str:
     """One line: "Suzanne cuts Spot, 629 faces"; "" without pairs."""
     if not pairs:
         return ""
-    among = _by_objects(pairs)
+    among = stiv_blender.FacePairs.of(pairs).by_objects()
     if len(among) == 1:
         return f"{_cuts(*next(iter(among)), translate)}, {faces_text(pairs, translate)}"
     names = [short_name(name) for name in dict.fromkeys(name for both in among for name in both)]
@@ -29,10 +29,12 @@ def headline(pairs: Pairs, translate: Translate = str) -> str:
 
 def details(pairs: Pairs, translate: Translate = str) -> list[str]:
     """A line for each of the first pairs of objects, the most faces first; none if the headline says it all."""
-    among = sorted(_by_objects(pairs).items(), key=lambda item: -stiv_blender.count_faces(item[1]))
+    among = stiv_blender.FacePairs.of(pairs).by_objects()
     if len(among) <= 1:
         return []
-    lines = [f"{_cuts(*names, translate)}: {faces_text(own, translate)}" for names, own in among[:LISTED]]
+    counts = {names: stiv_blender.count_faces(own) for names, own in among.items()}
+    most = sorted(counts, key=lambda names: -counts[names])[:LISTED]
+    lines = [f"{_cuts(*names, translate)}: {counted_faces(counts[names], translate)}" for names in most]
     return _with_others(lines, len(among), translate)
 
 
@@ -85,15 +87,6 @@ def brief(text: str) -> str:
     start = text[:LENGTH]
     ends = [start.rfind(mark) for mark in (". ", "; ", ", ", " ")]
     return start[: next((end for end in ends if end > 0), LENGTH)]
-
-
-def _by_objects(pairs: Pairs) -> dict[tuple[str, str], list[stiv_blender.FacePair]]:
-    """The pairs by the names of their objects, in alphabetical order."""
-    found: dict[tuple[str, str], list[stiv_blender.FacePair]] = {}
-    for pair in pairs:
-        first, second = sorted((pair.first.object, pair.second.object))
-        found.setdefault((first, second), []).append(pair)
-    return found
 
 
 def _cuts(first: str, second: str, translate: Translate) -> str:

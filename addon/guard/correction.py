@@ -29,7 +29,7 @@ class Outcome:
         text: the message to the user about it.
     """
 
-    pairs: tuple[stiv_blender.FacePair, ...] = ()
+    pairs: Sequence[stiv_blender.FacePair] = ()
     reason: str = ""
     failed: bool = False
     wrote: bool = False

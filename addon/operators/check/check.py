@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import bpy
 from bpy.props import BoolProperty
 
@@ -69,10 +67,10 @@ def clearance(context: bpy.types.Context) -> str:
     return "" if least is None else clearance_text(least)
 
 
-def select(context: bpy.types.Context, pairs: Sequence[stiv_blender.FacePair]) -> None:
+def select(context: bpy.types.Context, pairs: stiv_blender.FacePairs) -> None:
     """Select the objects and faces in the pairs, and deselect all others."""
     if context.mode == "OBJECT":
-        names = {each.object for pair in pairs for each in (pair.first, pair.second)}
+        names = {name for both in pairs.by_objects() for name in both}
         for obj in context.view_layer.objects:
             obj.select_set(obj.name in names)
     stiv_blender.select_faces(context, stiv_blender.faces_of(pairs))

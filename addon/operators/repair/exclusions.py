@@ -60,12 +60,11 @@ def excluded_count(stored: str) -> str:
         excluded = stiv_blender.Exclusions.from_json(stored)
     except ValueError as error:
         return translate_error(error)
-    return _excluded(excluded) if excluded.pairs else ""
+    return _excluded(excluded) if len(excluded) else ""
 
 
 def _excluded(excluded: stiv_blender.Exclusions) -> str:
-    faces = set().union(*excluded.faces.values())
-    return translate("{} excluded").format(counted_faces(len(faces), translate))
+    return translate("{} excluded").format(counted_faces(excluded.face_count, translate))
 
 
 def _settings(context: bpy.types.Context) -> stiv_blender.EditSettings:

@@ -30,8 +30,7 @@ class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
         except ValueError as error:
             return report_error(self, error)
         selected = {obj.name for obj in context.selected_objects}
-        names = {tuple(sorted((pair.first.object, pair.second.object))) for pair in found}
-        chosen = sorted(pair for pair in names if selected.intersection(pair))
+        chosen = sorted(names for names in found.by_objects() if selected.intersection(names))
         pairs = [pair for pair in chosen if pair[0] != pair[1]] or chosen
         if not pairs:
             self.report({"INFO"}, translate("The selection intersects no other object"))

@@ -14,6 +14,7 @@ from stiv.blender.edit.kept_session import free_kept_data
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import ObjectsIntersectError
 from stiv.blender.edit.state_writer import WriteReport
+from stiv.blender.excluded_pairs import Exclusions
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool
@@ -40,7 +41,7 @@ from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, e
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
 from stiv.blender.repair.separation import SeparationReport, separate, separate_steps
-from stiv.blender.scene.elements import Element, FacePair, count_faces
+from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces
 from stiv.blender.scene.evaluation_copies import copies_made
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
@@ -52,7 +53,7 @@ from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
 from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scripts.enabling import enable
-from stiv.blender.settings import EditSettings, Exclusions, Handles, LoopSurface, WeightGroup
+from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
 from stiv.blender.verify.scene_check import SceneCheck, check_scene, find_exclusions, nearest_pair, read_surface
 from stiv.blender.verify.untested import find_without_surface, unguarded_text
@@ -79,6 +80,7 @@ __all__ = [
     "Exclusions",
     "ExpansionSettings",
     "FacePair",
+    "FacePairs",
     "FitInto",
     "FitSettings",
     "FreeDirections",

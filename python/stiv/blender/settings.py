@@ -3,13 +3,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
 from typing import Literal
 
 from stiv import InputError
+from stiv.blender.excluded_pairs import Exclusions
 from stiv.choices import (
     BOUNDARIES,
     DEFORMATIONS,
@@ -24,7 +23,6 @@ from stiv.choices import (
 from stiv.edit_options import SharedOptions
 
 Kind = Literal["move", "rotate", "scale"]
-FaceKey = tuple[str, int]  # object, number of a face of its evaluated mesh
 
 
 @dataclass(frozen=True)
@@ -93,65 +91,6 @@ class LoopSurface:
         _require("boundary", self.boundary, BOUNDARIES)
         if self.levels not in (1, 2, 3):
             raise InputError(f"levels: {self.levels!r} must be 1, 2 or 3")
-
-
-@dataclass(frozen=True)
-class Exclusions:
-    """Excluded pairs of faces, which may intersect.
-
-    Pairs within an object stay as they are. Two objects with an excluded pair may part in any direction, and overlap no
-    more than at the start of an edit.
-
-    Attributes:
-        pairs: both faces of each pair, the smaller key first.
-        shapes: digest of the faces of each object by name. The pairs of an object with another digest are stale.
-    """
-
-    pairs: frozenset[tuple[FaceKey, FaceKey]] = frozenset()
-    shapes: Mapping[str, str] = field(default_factory=dict)
-
-    @cached_property
-    def faces(self) -> Mapping[tuple[str, str], set[FaceKey]]:
-        """The excluded faces of each two objects, or parts of an object, whose names are in ascending order."""
-        owners = {name: name.partition("\n")[0] for pair in self.pairs for name, _ in pair}
-        faces: dict[tuple[str, str], set[FaceKey]] = {}
-        for first, second in self.pairs:
-            a, b = owners[first[0]], owners[second[0]]
-            faces.setdefault((a, b) if a <= b else (b, a), set()).update((first, second))
-        return faces
-
-    @cached_property
-    def within(self) -> Mapping[str, set[frozenset[int]]]:
-        """The excluded pairs of different faces of one object, by the name in their keys."""
-        pairs: dict[str, set[frozenset[int]]] = {}
-        for (first, i), (second, j) in self.pairs:
-            if first == second and i != j:
-                pairs.setdefault(first, set()).add(frozenset((i, j)))
-        return pairs
-
-    @cached_property
-    def objects(self) -> frozenset[tuple[str, str]]:
-        """Pairs of different objects with excluded faces, in ascending order."""
-        return frozenset(names for names in self.faces if names[0] != names[1])
-
-    @staticmethod
-    @lru_cache(maxsize=2)
-    def from_json(text: str) -> Exclusions:
-        """Read the text of `to_json`; "" gives no pairs. Raises InputError for any other text."""
-        if not text:
-            return Exclusions()
-        try:
-            data = json.loads(text)
-            pairs = frozenset(((str(a), int(i)), (str(b), int(j))) for a, i, b, j in data["pairs"])
-            return Exclusions(pairs, {str(name): str(shape) for name, shape in data["shapes"].items()})
-        except (ValueError, TypeError, KeyError, AttributeError) as error:
-            raise InputError("the scene's excluded pairs cannot be read; use Clear Excluded Collisions") from error
-
-    def to_json(self) -> str:
-        """Text for a property of the scene; "" for no pairs."""
-        if not self.pairs:
-            return ""
-        return json.dumps({"pairs": [[a, i, b, j] for (a, i), (b, j) in sorted(self.pairs)], "shapes": {**self.shapes}})
 
 
 @dataclass(frozen=True)

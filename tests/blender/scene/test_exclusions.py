@@ -144,7 +144,7 @@ def test_notes_name_a_few_objects_the_moving_ones_first_and_count_the_others() -
     names = "ABCDEF"
     alone = [((name, 0), (name, 1)) for name in names]
     cut = [((first, 2), (second, 2)) for first, second in pairwise(names[:5])]
-    notes = intersection_notes(Exclusions(frozenset(alone + cut)), {"D"})
+    notes = intersection_notes(Exclusions.of_pairs(alone + cut), {"D"})
     assert notes == (
         "C cuts D, 2 faces, may only part", "D cuts E, 2 faces, may only part", "A cuts B, 2 faces, may only part",
         "B cuts C, 2 faces, may only part", "D intersects itself, 2 faces, left as it is",
@@ -155,7 +155,7 @@ def test_notes_name_a_few_objects_the_moving_ones_first_and_count_the_others() -
 
 def test_a_note_counts_the_faces_that_touch_too() -> None:
     cut, touching = (("A", 0), ("A", 1)), (("A", 1), ("A", 2))
-    exclusions = [Exclusions(frozenset(pairs)) for pairs in ([cut], [cut, touching])]
+    exclusions = [Exclusions.of_pairs(pairs) for pairs in ([cut], [cut, touching])]
     assert intersection_notes(exclusions[0], {"A"}, exclusions[0]) == ("A intersects itself, 2 faces, left as it is",)
     assert intersection_notes(exclusions[0], {"A"}, exclusions[1]) == (
         "A cuts or touches itself, 3 faces, left as it is",

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of faces of many pairs of triangles, against a list of names that is made one by one."""
+"""Pairs of faces of many pairs of triangles, and pairs as arrays, against lists that are made one by one."""
 
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from functools import lru_cache
 
 import bpy
@@ -13,8 +14,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from stiv.blender.scene.assembly import Assembly, assemble
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces
 from stiv.blender.scene.evaluated_scene import read_scene
+from stiv.blender.scene.evaluations import EVALUATIONS, SHOWN
 from stiv.blender.scene.face_pairs import find_face_pairs
 
 
@@ -50,11 +52,40 @@ def test_pairs_of_faces_are_those_of_single_triangles(data: st.DataObject) -> No
     pairs = data.draw(st.lists(st.tuples(triangle, triangle), max_size=40))
     found, numbers = assembly.face_pairs(np.array(pairs, np.int32).reshape(-1, 2))
     expected = counted(assembly, pairs)
-    assert [FacePair(*each) for each in found] == [pair for pair, _ in expected]
+    assert list(found) == [pair for pair, _ in expected]
     for (a, b), number in zip(pairs, numbers.tolist(), strict=True):
-        assert set(found[number]) == {assembly.face(a), assembly.face(b)}
-    counts = np.bincount(numbers, minlength=len(found)).tolist()
-    assert counts == [count for _, count in expected]
+        assert {found[number].first, found[number].second} == {assembly.face(a), assembly.face(b)}
+    assert [pair.triangle_pairs for pair in found] == [count for _, count in expected]
+
+
+elements = st.builds(
+    Element, st.sampled_from("AB"), st.sampled_from(["face", "edge"]), st.integers(0, 3), st.sampled_from(EVALUATIONS)
+)
+face_pairs = st.lists(st.builds(FacePair, elements, elements, st.integers(1, 3)), max_size=12)
+
+
+@given(face_pairs, face_pairs)
+def test_pairs_as_arrays_are_those_of_a_list(some: list[FacePair], others: list[FacePair]) -> None:
+    pairs = FacePairs.of(some)
+    assert pairs == some and list(pairs) == some and pairs[2:5] == some[2:5] and (pairs == others) == (some == others)
+    assert pairs.triangle_pairs.tolist() == [pair.triangle_pairs for pair in some]
+    same_kind = pairs.where(lambda first, second: first.kind == second.kind)
+    assert pairs.chosen(same_kind) == [pair for pair in some if pair.first.kind == pair.second.kind]
+    by_objects: dict[tuple[str, ...], list[FacePair]] = {}
+    for pair in some:
+        by_objects.setdefault(tuple(sorted((pair.first.object, pair.second.object))), []).append(pair)
+    assert list(pairs.by_objects().items()) == list(by_objects.items())
+    assert pairs.sides() == {frozenset((pair.first.object, pair.second.object)) for pair in some}
+    faces = {each for pair in some for each in (pair.first, pair.second) if each.kind == "face"}
+    assert {replace(owner, number=n) for owner, numbers in pairs.faces() for n in numbers.tolist()} == faces
+    assert count_faces(some) == (sum(each.evaluation == SHOWN for each in faces) or len(faces))
+    counts: Counter[FacePair] = Counter()
+    for pair in [*some, *others]:
+        turned = FacePair(pair.second, pair.first)
+        counts[turned if turned in counts else pair] += pair.triangle_pairs
+    joined = FacePairs.of(some).joined(others)
+    if others:
+        assert [(pair, pair.triangle_pairs) for pair in joined] == list(counts.items())
 
 
 def test_loose_elements_are_named_beside_faces() -> None:

@@ -49,7 +49,8 @@ class ClipSolver:
     def intersections(self, surface: Floats) -> list[tuple[str, str]]:
         """Names of the objects of intersecting pairs."""
         pairs = self._static.find(surface)
-        return sorted({(a.object, b.object) for a, b in self.assembly.face_pairs(pairs)[0]})
+        found = self.assembly.face_pairs(pairs)[0]
+        return sorted({(pair.first.object, pair.second.object) for pair in found})
 
     def follow(
         self, start: Reached, goals: Sequence[tuple[float, Floats]], separation: float = 0.0

@@ -145,7 +145,7 @@ class BlenderEdit:
     @property
     def keeps_intersections(self) -> bool:
         """Are there intersections that stay, and may only shrink?"""
-        return bool(self._solver.excluded.pairs)
+        return len(self._solver.excluded) > 0
 
     def intersects_itself(self, name: str) -> bool:
         """Does an object of this name intersect itself at the start? It can then deform little."""

@@ -62,7 +62,7 @@ class EditNotes:
     def torn_seam_note(self) -> str:
         """The message on faces at seams that the edit has torn, if they cut each other in the accepted state."""
         solver = self.solver
-        if not solver.excluded.pairs:
+        if not len(solver.excluded):
             return ""
         return torn_seam_note(solver.assembly, solver.excluded, solver.session.surface, self.threads)
 

@@ -62,7 +62,7 @@ def session_options(
     """
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     exclude = None
-    if settings.excluded.pairs:
+    if len(settings.excluded):
         q = make_deformation().surface(np.asarray(controls, np.float64))
         exclude = find_excluded_triangles(settings.excluded, assembly, q, settings.threads)
     return stiv.EditOptions(
@@ -153,11 +153,8 @@ def open_session(*given: Any, **_execution: Any) -> stiv.EditSession:
 
 def intersects_only_in_render(assembly: Assembly, error: stiv.StartIntersectsError) -> bool:
     """Does the start intersect only in the render?"""
-    return len(error.pairs) > 0 and all(_is_only_rendered(assembly, pair) for pair in error.pairs.tolist())
-
-
-def _is_only_rendered(assembly: Assembly, pair: Sequence[int]) -> bool:
-    return any(assembly.face(triangle).evaluation == RENDER for triangle in pair)
+    pairs, _ = assembly.face_pairs(error.pairs)
+    return len(pairs) > 0 and bool(pairs.where(lambda *both: RENDER in (each.evaluation for each in both)).all())
 
 
 def axes_of_all(control_sets: Sequence[ControlSet]) -> Floats | None:

@@ -201,7 +201,7 @@ class EditSolver:
             self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)
         (self._session, self._deformation), self.assembly = opened, assembly
-        if self.excluded.pairs:
+        if len(self.excluded):
             self.excluded = exclude_undecided(self.excluded, assembly, self.session.excluded, self._moving(assembly))
 
     def _make_session(
@@ -219,7 +219,7 @@ class EditSolver:
     def _is_changing(self) -> bool:
         """Does the session depend on more than its inputs: exclusions of the start, or values of Blender?"""
         sets = self.control_sets
-        return bool(self.excluded.pairs) or any(each.observed or each.placed or each.posed for each in sets)
+        return len(self.excluded) > 0 or any(each.observed or each.placed or each.posed for each in sets)
 
     def keep_session(self) -> None:
         """Leave the session to the next edit. This solver must not be used any more."""

@@ -41,7 +41,7 @@ class WriteReport:
     """
 
     passed: bool
-    intersections: tuple[FacePair, ...] = ()
+    intersections: Sequence[FacePair] = ()
     message: str = ""
     result: stiv.EditResult | None = None
 

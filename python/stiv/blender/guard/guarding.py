@@ -65,7 +65,7 @@ class GuardedResult:
     cut: tuple[str, ...] = ()
     stopped: bool = False
     notes: list[str] = field(default_factory=list)
-    pairs: tuple[FacePair, ...] = ()
+    pairs: Sequence[FacePair] = ()
     reason: str = ""
     deformers: tuple[str, ...] = ()
 

@@ -3,14 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import bpy
 
 from stiv.blender.scene.assembly import assemble_with_seams
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import Element, FacePair, FacePairs
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
@@ -23,7 +23,7 @@ ObjectPair = tuple[str, str]
 """Names of two objects in ascending order; the same name twice for an object that intersects itself."""
 
 
-def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tuple[FacePair, ...]:
+def find_intersections(context: bpy.types.Context, settings: EditSettings) -> FacePairs:
     """The intersecting pairs of the present scene that are not excluded, at most `MOST` of each two objects.
 
     Raises InputError.
@@ -31,27 +31,32 @@ def find_intersections(context: bpy.types.Context, settings: EditSettings) -> tu
     return run(find_intersections_steps(context, settings))
 
 
-def find_intersections_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[tuple[FacePair, ...]]:
+def find_intersections_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[FacePairs]:
     """Steps of `find_intersections`."""
     turns = Turns()
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
     yield from turns.take()
     assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs)
     yield from turns.take()
-    pairs = find_pairs(assembly, settings.threads, 0 if settings.excluded.pairs else MOST)
+    pairs = find_pairs(assembly, settings.threads, 0 if len(settings.excluded) else MOST)
     return without_excluded(pairs, settings.excluded)
 
 
 def fresh_objects(context: bpy.types.Context, settings: EditSettings, known: KnownIntersections) -> set[str]:
     """Names of the objects in intersections that are not known."""
     found = known.fresh(find_intersections(context, settings))
-    return {name for pair in found for name in object_pair(pair)}
+    return {name for both in found.by_objects() for name in both}
 
 
 def object_pair(pair: FacePair) -> ObjectPair:
     """The objects of a pair of elements."""
-    first, second = sorted((pair.first.object, pair.second.object))
-    return first, second
+    return objects_of(pair.first, pair.second)
+
+
+def objects_of(first: Element, second: Element) -> ObjectPair:
+    """The objects of two elements."""
+    a, b = sorted((first.object, second.object))
+    return a, b
 
 
 @dataclass(frozen=True)
@@ -62,12 +67,12 @@ class KnownIntersections:
     they are in each edit, and its other faces are guarded.
     """
 
-    pairs: tuple[FacePair, ...] = ()
+    pairs: Sequence[FacePair] = ()
 
     @cached_property
     def objects(self) -> frozenset[ObjectPair]:
         """The pairs of objects."""
-        return frozenset(map(object_pair, self.pairs))
+        return frozenset(FacePairs.of(self.pairs).by_objects())
 
     def left_out(self, settings: EditSettings, copies: Mapping[str, str] | None = None) -> EditSettings:
         """Settings of an edit that tests everything else.
@@ -79,6 +84,7 @@ class KnownIntersections:
             pairs |= {(copy, other) for pair in pairs for other in pair if original in pair and other != original}
         return replace(settings, ignored_pairs=(*settings.ignored_pairs, *sorted(pairs)))
 
-    def fresh(self, pairs: Iterable[FacePair]) -> tuple[FacePair, ...]:
+    def fresh(self, pairs: Iterable[FacePair]) -> FacePairs:
         """The pairs of objects that did not intersect before."""
-        return tuple(pair for pair in pairs if object_pair(pair) not in self.objects)
+        listed = FacePairs.of(pairs)
+        return listed.chosen(listed.where(lambda *both: objects_of(*both) not in self.objects))

@@ -227,7 +227,7 @@ def _remove(ob: bpy.types.Object) -> None:
 
 def _pairs_of(context: bpy.types.Context, settings: EditSettings) -> set[frozenset[str]]:
     """Names of the objects that intersect."""
-    return {frozenset((pair.first.object, pair.second.object)) for pair in check_scene(context, settings).pairs}
+    return {frozenset(both) for both in check_scene(context, settings).pairs.by_objects()}
 
 
 def place(context: bpy.types.Context, settings: PlaceSettings | None = None, **execution: Any) -> LayoutReport:

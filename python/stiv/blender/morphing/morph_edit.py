@@ -96,7 +96,7 @@ class MorphEdit:
     def torn_seam_note(self) -> str:
         """The message on faces at seams that the edit has torn, if they cut each other now; "" without any."""
         excluded, threads = self._session.excluded, self._scene.settings.threads
-        if not excluded.pairs:
+        if not len(excluded):
             return ""
         return torn_seam_note(self._scene.assembly, excluded, self._session.core.surface, threads)
 

@@ -10,6 +10,7 @@ import numpy as np
 import stiv
 from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.edit.sessions import ObjectsIntersectError, body_separations, open_session
+from stiv.blender.excluded_pairs import Exclusions
 from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.scene.exclusions import (
@@ -18,7 +19,6 @@ from stiv.blender.scene.exclusions import (
     find_excluded_triangles,
     intersection_notes,
 )
-from stiv.blender.settings import Exclusions
 from stiv.task import Call, Steps
 
 CALLS = 4  # between two Jacobians

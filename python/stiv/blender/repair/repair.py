@@ -19,7 +19,7 @@ from stiv.blender.repair.reshaping import (
 from stiv.blender.repair.rest_shape import store_rest_shape
 from stiv.blender.repair.welding import WeldedMeshes, weld_copies
 from stiv.blender.scene.arrays import Floats
-from stiv.blender.scene.elements import FacePair, count_faces
+from stiv.blender.scene.elements import count_faces
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.deadlines import deadline_after, time_left
@@ -140,8 +140,7 @@ class BlenderRepair:
     def _ended(self, status: str, message: str) -> ReshapeReport:
         """Restore the start and report it."""
         self.restore()
-        pairs: tuple[FacePair, ...] = self._before
-        return ReshapeReport(status, False, message, pairs, len(self._before))
+        return ReshapeReport(status, False, message, self._before, len(self._before))
 
 
 def repair_scene(context: bpy.types.Context, settings: RepairSettings | None = None, **execution: Any) -> ReshapeReport:

@@ -74,7 +74,7 @@ class ReshapeReport:
     status: str
     changed: bool
     message: str = ""
-    pairs: tuple[FacePair, ...] = ()
+    pairs: Sequence[FacePair] = ()
     pairs_before: int = 0
     deviation: float = 0.0
     contracted: str = ""

@@ -14,7 +14,7 @@ from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats, translation_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import FacePairs
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.verification import read_shown
@@ -105,6 +105,6 @@ def _indices(assembly: Assembly, names: frozenset[str]) -> list[int]:
     return [index for index, mesh in enumerate(assembly.meshes) if mesh.owner.name in names]
 
 
-def _others(pairs: tuple[FacePair, ...], moving: frozenset[str]) -> tuple[str, ...]:
-    names = {name for pair in pairs for name in (pair.first.object, pair.second.object)}
+def _others(pairs: FacePairs, moving: frozenset[str]) -> tuple[str, ...]:
+    names = {name for both in pairs.by_objects() for name in both}
     return tuple(sorted(names - moving))

@@ -13,13 +13,19 @@ from stiv.points import apply_linear, transform_points
 
 __all__ = [
     "Flags", "Floats", "Indices", "Singles", "apply_linear", "as_matrix", "diagonal_of", "digest", "extents", "invert",
-    "islands", "read_collection", "to_local", "transform_points", "translation_matrix",
+    "islands", "pair_codes", "read_collection", "to_local", "transform_points", "translation_matrix",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Indices = NDArray[np.int32]
 Flags = NDArray[np.bool_]
+
+
+def pair_codes(pairs: NDArray[Any]) -> NDArray[np.int64]:
+    """A number for each pair of numbers below 2^32, (k, 2), in either order."""
+    codes: NDArray[np.int64] = (pairs.min(axis=1).astype(np.int64) << 32) + pairs.max(axis=1)
+    return codes
 
 
 def as_matrix(matrix: Iterable[Iterable[float]]) -> Floats:

@@ -2,17 +2,16 @@
 """All visible meshes as one surface, with lookup from its triangles to objects and faces."""
 
 from bisect import bisect_right
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
 
 import numpy as np
-from numpy.typing import NDArray
 
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices, Singles
-from stiv.blender.scene.elements import Element
+from stiv.blender.scene.elements import Element, FacePairs
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.shared_surface import make_surface
 from stiv.blender.scene.static_mesh import StaticMesh
@@ -69,21 +68,16 @@ class Assembly:
         mesh, number = self._locate(triangle, self._triangle_ends)
         return Element(mesh.owner.name, _kind(mesh, "face"), int(mesh.faces[number]), mesh.read_from, mesh.part)
 
-    def face_pairs(self, pairs: Indices) -> tuple[list[tuple[Element, Element]], Indices]:
+    def face_pairs(self, pairs: Indices) -> tuple[FacePairs, Indices]:
         """The pairs of faces of pairs of triangles, (k, 2), of the surface or an obstacle.
 
         Each pair occurs once, in the order and with the first face of its first pair of triangles. Also returns, for
         each pair of triangles, the number of its pair of faces, (k,).
         """
         triangles, places = np.unique(pairs, return_inverse=True)
-        faces, numbers = self._distinct_faces(triangles)
-        both = numbers[places.reshape(-1, 2)]
-        keys = both.min(axis=1) * np.int64(len(faces)) + both.max(axis=1)
-        _, firsts, inverse = np.unique(keys, return_index=True, return_inverse=True)
-        order = np.argsort(firsts)
-        rank = np.empty(len(order), np.int32)
-        rank[order] = np.arange(len(order), dtype=np.int32)
-        return [(faces[a], faces[b]) for a, b in both[firsts[order]].tolist()], rank[inverse.reshape(-1)]
+        owners, owner, number = self._owned_faces(triangles)
+        places = places.reshape(-1, 2)
+        return FacePairs.merged(owners, owner[places], number[places])
 
     def loose_edge(self, edge: int) -> Element:
         """The edge of a loose edge of the surface."""
@@ -99,16 +93,29 @@ class Assembly:
         first = number if seams is None else int(seams.first[number])
         return Element(mesh.owner.name, "vertex", mesh.vertex_number(first), mesh.read_from, mesh.part)
 
-    def _distinct_faces(self, triangles: Indices) -> tuple[list[Element], NDArray[np.int64]]:
-        """The faces of triangles, (n,), and for each triangle the number of its face, (n,)."""
-        inside = triangles[triangles < len(self.surface.triangles)]
-        mesh = np.searchsorted(self._triangle_ends, inside, side="right")
-        keys = mesh * (np.int64(1) << 32) + self._triangle_faces[inside]
-        _, firsts, inverse = np.unique(keys, return_index=True, return_inverse=True)
-        named = [self.face(triangle) for triangle in [*inside[firsts].tolist(), *triangles[len(inside) :].tolist()]]
-        numbers = {face: number for number, face in enumerate(dict.fromkeys(named))}  # some meshes show the same faces
-        own = np.array([numbers[face] for face in named], np.int64)
-        return list(numbers), np.concatenate([own[: len(firsts)][inverse.reshape(-1)], own[len(firsts) :]])
+    def _owned_faces(self, triangles: Indices) -> tuple[list[Element], Indices, Indices]:
+        """Owners of faces (see FacePairs), and the owner and the face of each of some ascending triangles, (n,)."""
+        owners: dict[Element, int] = {}  # some meshes show the same faces
+        owner, number = [np.empty(0, np.int32)], [np.empty(0, np.int32)]
+        for element, numbers in self._elements_of(triangles):
+            owner.append(np.full(len(numbers), owners.setdefault(element, len(owners)), np.int32))
+            number.append(numbers)
+        return list(owners), np.concatenate(owner), np.concatenate(number)
+
+    def _elements_of(self, triangles: Indices) -> Iterator[tuple[Element, Indices]]:
+        """The elements of ascending triangles, (n,), in their order: those of one mesh and kind together."""
+        begin = 0
+        for mesh, end in zip(self.meshes, np.searchsorted(triangles, self._triangle_ends).tolist(), strict=True):
+            if end > begin:
+                kind = Element(mesh.owner.name, _kind(mesh, "face"), 0, mesh.read_from, mesh.part)
+                yield kind, self._triangle_faces[triangles[begin:end]]
+            begin = end
+        first = len(self.surface.triangles)
+        for static in self.obstacles:
+            own = triangles[begin:] - np.int32(first)
+            end = int(np.searchsorted(own, static.obstacle.triangle_count))
+            yield from static.elements(own[:end])
+            begin, first = begin + end, first + static.obstacle.triangle_count
 
     @cached_property
     def _triangle_faces(self) -> Indices:

@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Elements of evaluated meshes as messages and reports name them, and pairs of elements that intersect."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiv.blender.scene.arrays import Indices
 from stiv.blender.scene.evaluations import SHOWN
 
 PART = "\t"  # between the name of an object and the number of a part
@@ -38,7 +45,154 @@ class FacePair:
     triangle_pairs: int = field(default=1, compare=False)
 
 
+class FacePairs(Sequence[FacePair]):
+    """Intersecting pairs of elements as arrays, since a copy of a mesh in the place of the original makes millions.
+
+    Attributes:
+        owners: what elements have in common, as elements with the number 0; each once.
+        owner: the owner of both elements of each pair, (k, 2).
+        number: the numbers of both elements, (k, 2).
+        triangle_pairs: of each pair, (k,).
+    """
+
+    def __init__(self, owners: Sequence[Element], owner: Indices, number: Indices, triangle_pairs: Indices) -> None:
+        """Take pairs that occur once."""
+        self.owners = tuple(owners)
+        self.owner = owner
+        self.number = number
+        self.triangle_pairs = triangle_pairs
+
+    @staticmethod
+    def of(pairs: Iterable[FacePair]) -> FacePairs:
+        """The same pairs as arrays."""
+        if isinstance(pairs, FacePairs):
+            return pairs
+        listed = list(pairs)
+        owners: dict[Element, int] = {}
+        elements = [each for pair in listed for each in (pair.first, pair.second)]
+        owner = [owners.setdefault(replace(each, number=0), len(owners)) for each in elements]
+        number = [each.number for each in elements]
+        counts = np.array([pair.triangle_pairs for pair in listed], np.int32)
+        return FacePairs(list(owners), _as_pairs(owner), _as_pairs(number), counts)
+
+    def joined(self, others: Iterable[FacePair]) -> FacePairs:
+        """These pairs and others, each once; triangles of equal pairs are added."""
+        after = FacePairs.of(others)
+        if not len(after):
+            return self
+        place = {owner: number for number, owner in enumerate(dict.fromkeys((*self.owners, *after.owners)))}
+        places = np.array([place[owner] for owner in after.owners], np.int32)
+        owner, number = np.concatenate([self.owner, places[after.owner]]), np.concatenate([self.number, after.number])
+        pairs, numbers = FacePairs.merged(list(place), owner, number)
+        counts = np.bincount(numbers, np.concatenate([self.triangle_pairs, after.triangle_pairs]), len(pairs))
+        return FacePairs(pairs.owners, pairs.owner, pairs.number, counts.astype(np.int32))
+
+    @staticmethod
+    def merged(owners: Sequence[Element], owner: Indices, number: Indices) -> tuple[FacePairs, Indices]:
+        """Pairs of which some are equal, whichever element is first; also the number of the pair in each row, (k,).
+
+        Each pair occurs once, in the order and with the first element of its first row.
+        """
+        elements, places = np.unique(_codes(owner, number), return_inverse=True)
+        both = places.reshape(-1, 2)
+        keys = both.min(axis=1) * np.int64(len(elements)) + both.max(axis=1)
+        firsts, numbers = _distinct(keys)
+        counts = np.bincount(numbers, minlength=len(firsts)).astype(np.int32)
+        return FacePairs(owners, owner[firsts], number[firsts], counts), numbers
+
+    def __len__(self) -> int:
+        """Return the number of pairs."""
+        return len(self.owner)
+
+    @overload
+    def __getitem__(self, index: int) -> FacePair: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> FacePairs: ...
+
+    def __getitem__(self, index: int | slice) -> FacePair | FacePairs:
+        """Return a pair, or some of them."""
+        if isinstance(index, slice):
+            return self.chosen(index)
+        return next(iter(self.chosen(np.array([index]))))
+
+    def __iter__(self) -> Iterator[FacePair]:
+        """Iterate over the pairs."""
+        rows = zip(self.owner.tolist(), self.number.tolist(), self.triangle_pairs.tolist(), strict=True)
+        for (first, second), (i, j), count in rows:
+            yield FacePair(_numbered(self.owners[first], i), _numbered(self.owners[second], j), count)
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether a sequence has the same pairs in the same order."""
+        return isinstance(other, Sequence) and len(self) == len(other) and all(map(FacePair.__eq__, self, other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def chosen(self, rows: slice | Indices | NDArray[np.bool_]) -> FacePairs:
+        """Some of the pairs, by number or flag."""
+        return FacePairs(self.owners, self.owner[rows], self.number[rows], self.triangle_pairs[rows])
+
+    def where(self, holds: Callable[[Element, Element], bool]) -> NDArray[np.bool_]:
+        """Flags the pairs, (k,), whose owners have a property."""
+        owners, numbers = self._pairs_of_owners()
+        return np.array([holds(*both) for both in owners], np.bool_)[numbers]
+
+    def by_objects(self) -> dict[tuple[str, str], FacePairs]:
+        """The pairs of each two objects, whose names are in ascending order, or of one."""
+        owners, numbers = self._pairs_of_owners()
+        names: dict[tuple[str, str], list[int]] = {}
+        for number, (first, second) in enumerate(owners):
+            a, b = sorted((first.object, second.object))
+            names.setdefault((a, b), []).append(number)
+        return {both: self.chosen(np.isin(numbers, chosen)) for both, chosen in names.items()}
+
+    def _pairs_of_owners(self) -> tuple[list[tuple[Element, Element]], Indices]:
+        """The different pairs of owners in the order of their first pair, and the number of its owners for each."""
+        firsts, numbers = _distinct(_codes(self.owner[:, 0], self.owner[:, 1]))
+        return [(self.owners[a], self.owners[b]) for a, b in self.owner[firsts].tolist()], numbers
+
+    def sides(self) -> set[frozenset[str]]:
+        """The objects of each pair, or the parts of a divided mesh."""
+        return {sides_of(*both) for both in self._pairs_of_owners()[0]}
+
+    def faces(self) -> list[tuple[Element, Indices]]:
+        """Each owner of faces with the numbers of its faces, ascending."""
+        codes = np.unique(_codes(self.owner, self.number))
+        owner, number = codes >> 32, (codes & 0xFFFFFFFF).astype(np.int32)
+        present = np.unique(owner).tolist()
+        return [(self.owners[k], number[owner == k]) for k in present if self.owners[k].kind == "face"]
+
+
+def sides_of(first: Element, second: Element) -> frozenset[str]:
+    """The objects of two elements, or the parts of a divided mesh."""
+    return frozenset((first.side, second.side))
+
+
+def _numbered(owner: Element, number: int) -> Element:
+    return Element(owner.object, owner.kind, number, owner.evaluation, owner.part)
+
+
+def _as_pairs(values: Sequence[int]) -> Indices:
+    return np.array(values, np.int32).reshape(-1, 2)
+
+
+def _codes(owner: Indices, number: Indices) -> NDArray[np.int64]:
+    """A number for each element."""
+    return (owner.astype(np.int64) << 32) + number
+
+
+def _distinct(keys: NDArray[np.int64]) -> tuple[Indices, Indices]:
+    """The first row of each different key, ascending, and for each row the number of its key."""
+    _, firsts, inverse = np.unique(keys, return_index=True, return_inverse=True)
+    order = np.argsort(firsts)
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order), dtype=np.int32)
+    return firsts[order].astype(np.int32), rank[inverse.reshape(-1)]
+
+
 def count_faces(pairs: Iterable[FacePair]) -> int:
     """Number of different faces in the pairs: of those that are shown, if there are any."""
-    faces = {each for pair in pairs for each in (pair.first, pair.second) if each.kind == "face"}
-    return sum(each.evaluation == SHOWN for each in faces) or len(faces)
+    faces = FacePairs.of(pairs).faces()
+    return sum(len(numbers) for owner, numbers in faces if owner.evaluation == SHOWN) or sum(
+        len(numbers) for _, numbers in faces
+    )

@@ -5,27 +5,31 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Collection, Sequence
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import PART, Element, FacePair
+from stiv.blender.scene.elements import PART, Element, FacePair, FacePairs
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
 from stiv.blender.scene.message_fitting import first_and_others, fit_message
 from stiv.blender.scene.near_assembly import near_assembly
-from stiv.blender.settings import Exclusions, FaceKey
 
 _MOST_NOTES = 3  # of one kind that name objects
 
 
 def exclude(pairs: Sequence[FacePair], meshes: Sequence[VisibleMesh]) -> Exclusions:
     """Exclude the given pairs of faces. Pairs with loose edges, loose vertices or strands cannot be excluded."""
-    chosen = frozenset(_key(pair.first, pair.second) for pair in pairs if pair.first.kind == pair.second.kind == "face")
-    names = {name for pair in chosen for name, _ in pair}
-    return Exclusions(chosen, {name: _digest(meshes, name) for name in sorted(names)})
+    listed = FacePairs.of(pairs)
+    faces = listed.chosen(listed.where(lambda first, second: first.kind == second.kind == "face"))
+    chosen = Exclusions.of(*_keys_of(faces))
+    return replace(chosen, shapes={name: _digest(meshes, name) for name in chosen.names})
 
 
 def exclude_undecided(
@@ -36,8 +40,7 @@ def exclude_undecided(
     together: names of objects, see `needs_no_decision`.
     """
     pairs, _ = assembly.face_pairs(found)
-    chosen = frozenset(_key(a, b) for a, b in pairs if needs_no_decision(a, b, together))
-    return Exclusions(excluded.pairs | chosen, excluded.shapes)
+    return excluded.joined(*_keys_of(pairs.chosen(pairs.where(partial(needs_no_decision, together=together)))))
 
 
 def needs_no_decision(first: Element, second: Element, together: Collection[str]) -> bool:
@@ -47,12 +50,9 @@ def needs_no_decision(first: Element, second: Element, together: Collection[str]
 
 def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:
     """Pairs of different objects in pairs of triangles, (k, 2), with the number of their faces."""
-    faces: dict[tuple[str, str], set[Element]] = {}
-    for elements in assembly.face_pairs(found)[0]:
-        first, second = sorted(each.object for each in elements)
-        if first != second:
-            faces.setdefault((first, second), set()).update(elements)
-    return tuple((*names, len(each)) for names, each in sorted(faces.items()))
+    pairs = assembly.face_pairs(found)[0].by_objects()
+    count = {names: sum(len(numbers) for _, numbers in own.faces()) for names, own in pairs.items()}
+    return tuple((*names, count[names]) for names in sorted(count) if names[0] != names[1])
 
 
 def intersection_text(first: str, second: str, count: int, ending: str = "") -> str:
@@ -81,20 +81,21 @@ def intersection_notes(
     faces = _faces_of_objects(excluded)
     touching = faces if with_touching is None else _faces_of_objects(with_touching)
     rows = sorted(faces.items(), key=lambda row: (not any(name in moving for name in row[0]), row[0]))
-    alone = [_note_of_one(names[0], len(keys), len(touching[names])) for names, keys in rows if names[0] == names[1]]
-    pairs = [intersection_text(*names, len(keys), ", may only part") for names, keys in rows if names[0] != names[1]]
+    alone = [_note_of_one(names[0], count, touching[names]) for names, count in rows if names[0] == names[1]]
+    pairs = [intersection_text(*names, count, ", may only part") for names, count in rows if names[0] != names[1]]
     return (
         *_first_of(pairs, "{} more pairs of objects cut each other, may only part"),
         *_first_of(alone, "{} more objects intersect themselves, left as they are"),
     )
 
 
-def _faces_of_objects(excluded: Exclusions) -> dict[tuple[str, str], set[FaceKey]]:
-    faces: dict[tuple[str, str], set[FaceKey]] = {}
+def _faces_of_objects(excluded: Exclusions) -> dict[tuple[str, str], int]:
+    """The number of excluded faces of each two objects, whose names are in ascending order, or of one."""
+    faces: dict[tuple[str, str], list[NDArray[np.int64]]] = {}
     for sides, keys in excluded.faces.items():
         first, second = sorted(name.partition(PART)[0] for name in sides)
-        faces.setdefault((first, second), set()).update(keys)
-    return faces
+        faces.setdefault((first, second), []).append(keys)
+    return {names: len(np.unique(np.concatenate(keys))) for names, keys in faces.items()}
 
 
 def _first_of(notes: list[str], rest: str) -> list[str]:
@@ -117,9 +118,7 @@ def drop_stale(excluded: Exclusions, meshes: Sequence[VisibleMesh]) -> tuple[Exc
     stale = {name for name, shape in excluded.shapes.items() if name in shown and _digest(meshes, name) != shape}
     if not stale:
         return excluded, ""
-    pairs = frozenset(pair for pair in excluded.pairs if not {name for name, _ in pair} & stale)
-    shapes = {name: shape for name, shape in excluded.shapes.items() if name not in stale}
-    return Exclusions(pairs, shapes), _stale_text(sorted(stale))
+    return excluded.without(stale), _stale_text(sorted(stale))
 
 
 def _stale_text(names: Sequence[str]) -> str:
@@ -128,12 +127,12 @@ def _stale_text(names: Sequence[str]) -> str:
 
 def find_excluded_triangles(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> Indices:
     """Find the pairs of triangles, (k, 2), of excluded faces of one object that intersect at positions, (N, 3)."""
-    if len(excluded.pairs) == 0:
+    if len(excluded) == 0:
         return np.empty((0, 2), np.int32)
     found = stiv.find_intersections(q, assembly.surface, threads=threads)
     pairs, numbers = assembly.face_pairs(found)
-    is_chosen = [a.side == b.side and _key(a, b) in excluded.pairs for a, b in pairs]
-    chosen: Indices = found[np.array(is_chosen, bool)[numbers]]
+    is_chosen = pairs.where(lambda a, b: a.side == b.side) & excluded.contains(*_keys_of(pairs))
+    chosen: Indices = found[is_chosen[numbers]]
     return chosen
 
 
@@ -156,31 +155,38 @@ def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threa
     """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    return all(_is_excluded(excluded, a, b) for a, b in near.assembly.face_pairs(found)[0])
+    return bool(are_excluded(excluded, near.assembly.face_pairs(found)[0]).all())
 
 
-def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> set[frozenset[int]]:
-    """Pairs of faces of one mesh, or part of one, that are excluded."""
+def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> NDArray[np.int64]:
+    """Pairs of different faces of one mesh, or part of one, that are excluded, ascending, (m, 2)."""
     side = Element(mesh.owner.name, "face", 0, mesh.read_from, mesh.part)
-    return excluded.within.get(_name(side.side, mesh.read_from), set())
+    return excluded.within(_name(side.side, mesh.read_from))
 
 
-def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> tuple[FacePair, ...]:
+def without_excluded(pairs: Sequence[FacePair], excluded: Exclusions) -> FacePairs:
     """The pairs that are not excluded, and not of two objects with excluded faces."""
-    if not excluded.pairs:
-        return tuple(pairs)
-    return tuple(pair for pair in pairs if not _is_excluded(excluded, pair.first, pair.second))
+    listed = FacePairs.of(pairs)
+    return listed.chosen(~are_excluded(excluded, listed)) if len(excluded) else listed
 
 
-def _is_excluded(excluded: Exclusions, first: Element, second: Element) -> bool:
-    a, b = sorted((first.side, second.side))
-    return (a, b) in excluded.objects if a != b else _key(first, second) in excluded.pairs
+def are_excluded(excluded: Exclusions, pairs: FacePairs) -> Flags:
+    """Flags the pairs, (k,), that are excluded, or of two objects with excluded faces."""
+
+    def are_objects_excluded(first: Element, second: Element) -> bool:
+        a, b = sorted((first.side, second.side))
+        return (a, b) in excluded.objects
+
+    own = pairs.where(lambda first, second: first.side == second.side)
+    return np.where(own, excluded.contains(*_keys_of(pairs)), pairs.where(are_objects_excluded))
 
 
-def _key(first: Element, second: Element) -> tuple[FaceKey, FaceKey]:
-    """Both elements in ascending order. Loose elements get a number that no face has."""
-    a, b = ((_name(each.side, each.evaluation), each.number if each.kind == "face" else -1) for each in (first, second))
-    return (a, b) if a <= b else (b, a)
+def _keys_of(pairs: FacePairs) -> tuple[list[str], NDArray[np.int64]]:
+    """Names and rows of pairs, as those of `Exclusions.of`. Loose elements get a number that no face has."""
+    is_face = np.array([owner.kind == "face" for owner in pairs.owners], np.bool_)
+    number = np.where(is_face[pairs.owner], pairs.number, -1)
+    rows = np.stack([pairs.owner, number], axis=2).reshape(-1, 4).astype(np.int64)
+    return [_name(owner.side, owner.evaluation) for owner in pairs.owners], rows
 
 
 def _name(name: str, evaluation: str) -> str:

@@ -3,36 +3,26 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from itertools import chain
-
 import numpy as np
 
 import stiv
 from stiv.blender.scene.arrays import Floats, Indices
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import Element, FacePair
+from stiv.blender.scene.elements import Element, FacePair, FacePairs
 
 
-def find_face_pairs(
-    assembly: Assembly, q: Floats, threads: int = 0, intersecting: Indices | None = None
-) -> tuple[FacePair, ...]:
+def find_face_pairs(assembly: Assembly, q: Floats, threads: int = 0, intersecting: Indices | None = None) -> FacePairs:
     """All intersections at positions `q`, (N, 3), without duplicates, including those of loose edges and vertices.
 
     intersecting: pairs of triangles, (k, 2), if known.
     """
     faces = stiv.find_intersections(q, assembly.surface, threads=threads) if intersecting is None else intersecting
-    none = np.empty((0, 2), np.int32)
-    loose = has_loose_elements(assembly.surface)
-    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads) if loose else (none, none)
-    pairs, numbers = assembly.face_pairs(faces)
-    counts = Counter(dict(zip(pairs, np.bincount(numbers, minlength=len(pairs)).tolist(), strict=True)))
-    for pair in chain(
-        ((assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()),
-        ((assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()),
-    ):
-        counts[pair[::-1] if pair[::-1] in counts else pair] += 1
-    return tuple(FacePair(first, second, number) for (first, second), number in counts.items())
+    if not has_loose_elements(assembly.surface):
+        return assembly.face_pairs(faces)[0]
+    edges, vertices = stiv.find_loose_intersections(q, assembly.surface, threads=threads)
+    loose = [(assembly.loose_edge(a), assembly.face(b)) for a, b in edges.tolist()]
+    loose += [(assembly.vertex(a), assembly.face(b)) for a, b in vertices.tolist()]
+    return assembly.face_pairs(faces)[0].joined(FacePair(*both) for both in loose)
 
 
 def has_loose_elements(surface: stiv.Surface) -> bool:

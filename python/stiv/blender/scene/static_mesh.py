@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,12 +54,18 @@ class StaticMesh:
 
     def element(self, triangle: int) -> Element:
         """The element of a triangle of the obstacle."""
-        edge = triangle - self.triangle_count
-        if edge < 0:
-            return Element(self.owner.name, "face", int(self._faces_of(np.array([triangle], np.int32))[0]))
-        if edge < len(self.loose_edges):
-            return Element(self.owner.name, "edge", int(self.loose_numbers[edge]))
-        return Element(self.owner.name, "vertex", int(self.loose_vertices[edge - len(self.loose_edges)]))
+        kinds = self.elements(np.array([triangle], np.int32))
+        return next(replace(kind, number=int(numbers[0])) for kind, numbers in kinds if len(numbers))
+
+    def elements(self, triangles: Indices) -> tuple[tuple[Element, Indices], ...]:
+        """The faces, edges and vertices of some triangles of the obstacle, ascending; each kind with its numbers."""
+        edges, vertices = np.searchsorted(triangles, [self.triangle_count, self.triangle_count + len(self.loose_edges)])
+        numbers = {
+            "face": self._faces_of(triangles[:edges]),
+            "edge": self.loose_numbers[triangles[edges:vertices] - self.triangle_count],
+            "vertex": self.loose_vertices[triangles[vertices:] - self.triangle_count - len(self.loose_edges)],
+        }
+        return tuple((Element(self.owner.name, kind, 0), own) for kind, own in numbers.items())
 
     def cropped(self, near: Indices) -> VisibleMesh:
         """The elements of some triangles of the obstacle, ascending."""

@@ -9,13 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 import stiv
-from stiv.blender.scene.arrays import Floats, Indices
+from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.scene.arrays import Floats, Indices, pair_codes
 from stiv.blender.scene.assembly import ROUNDING, Assembly
 from stiv.blender.scene.elements import Element, FacePair, count_faces
 from stiv.blender.scene.exclusions import excluded_within
 from stiv.blender.scene.message_fitting import fit_message
 from stiv.blender.scene.triangulation_flips import is_deformable
-from stiv.blender.settings import Exclusions
 from stiv.seams import find_seams, seam_pairs
 
 _Faces = frozenset[int]
@@ -54,14 +54,13 @@ def self_cuts(points: Floats, corners: Indices, faces: Indices, threads: int = 0
 def _cuts_at_seams(assembly: Assembly, number: int, excluded: Exclusions, q: Floats, threads: int) -> set[_Faces]:
     """Pairs of excluded faces of a mesh that touch along a seam at the start, and newly cut each other."""
     mesh = assembly.meshes[number]
-    pairs = excluded_within(excluded, mesh) if is_deformable(assembly, number) else set()
-    if not pairs:
+    if not is_deformable(assembly, number) or not len(pairs := excluded_within(excluded, mesh)):
         return set()
-    rows = np.isin(mesh.faces, np.array(sorted(frozenset().union(*pairs)), np.int32))
+    rows = np.isin(mesh.faces, pairs)
     first, last = assembly.starts[number : number + 2].tolist()
     corners, faces = assembly.vertices(number)[mesh.triangles[rows]] - np.int32(first), mesh.faces[rows]
     start = assembly.positions[first:last]
     touching = seam_pairs(find_seams(start, corners, ROUNDING), corners, faces)
-    at_seams = pairs.intersection(map(frozenset, touching.tolist()))
+    at_seams = set(map(frozenset, touching[np.isin(pair_codes(touching), pair_codes(pairs))].tolist()))
     cut = at_seams & self_cuts(q[first:last], corners, faces, threads) if at_seams else set()
     return cut - self_cuts(start, corners, faces, threads) if cut else set()

@@ -106,7 +106,7 @@ def guard_bent_quads(assembly: Assembly, threads: int = 0) -> Assembly:
         pairs = stiv.find_intersections(near.assembly.positions, near.assembly.surface, threads=threads)
         if len(pairs) == 0:
             return extended
-        intersecting = {face for pair in near.assembly.face_pairs(pairs)[0] for face in pair}
+        intersecting = {face for pair in near.assembly.face_pairs(pairs)[0] for face in (pair.first, pair.second)}
         left = [flip for each in flips if len((flip := _drop_intersecting(each, intersecting, assembly)).faces)]
         if sum(len(flip.faces) for flip in left) == sum(len(flip.faces) for flip in flips):
             return extended  # other faces intersect; the session reports them

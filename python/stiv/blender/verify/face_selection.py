@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import bmesh
 import bpy
@@ -12,24 +12,23 @@ from numpy.typing import NDArray
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Indices
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import FacePair, FacePairs
 from stiv.blender.scene.evaluations import SHOWN
 from stiv.blender.scene.mesh_reading import evaluated_mesh, read_faces
 from stiv.blender.scene.modifier_stack import SubdivisionStage, read_stack
 
 
-def faces_of(pairs: Sequence[FacePair]) -> dict[str, set[int]]:
-    """Numbers of the evaluated faces in the pairs, by object name."""
-    found: dict[str, set[int]] = {}
-    for pair in pairs:
-        for each in (pair.first, pair.second):
-            numbers = found.setdefault(each.object, set())
-            if each.kind == "face" and each.evaluation == SHOWN:
-                numbers.add(each.number)
-    return found
+def faces_of(pairs: Sequence[FacePair]) -> dict[str, Indices]:
+    """Numbers of the displayed faces in the pairs, by the names of all their objects; ascending, (n,)."""
+    listed = FacePairs.of(pairs)
+    found: dict[str, list[Indices]] = {name: [] for both in listed.by_objects() for name in both}
+    for owner, numbers in listed.faces():
+        if owner.evaluation == SHOWN:
+            found[owner.object].append(numbers)
+    return {name: np.unique(np.concatenate([np.empty(0, np.int32), *each])) for name, each in found.items()}
 
 
-def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]]) -> dict[str, int]:
+def select_faces(context: bpy.types.Context, faces: Mapping[str, Indices]) -> dict[str, int]:
     """Select exactly the faces that generate these evaluated faces, in every visible mesh; returns counts by object
     name.
 
@@ -49,7 +48,7 @@ def select_faces(context: bpy.types.Context, faces: Mapping[str, Collection[int]
         origins = _origins(ob, context.scene, total)
         if origins is not None:
             chosen = np.zeros(len(ob.data.polygons), bool)
-            chosen[origins[np.array(sorted(numbers), np.int64)]] = True
+            chosen[origins[numbers]] = True
             counts[name] = int(chosen.sum())
             (_select_in_edit_mode if ob.mode == "EDIT" else _select)(ob.data, chosen)
     if any(bpy.data.objects[name].mode == "EDIT" for name in counts):

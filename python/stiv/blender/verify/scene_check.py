@@ -9,15 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.scene.arrays import Indices
+from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.scene.arrays import Indices, pair_codes
 from stiv.blender.scene.assembly import Assembly, assemble, assemble_with_seams
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import FacePairs
 from stiv.blender.scene.evaluated_scene import read_scene
 from stiv.blender.scene.evaluations import find_replaced_cages
 from stiv.blender.scene.exclusions import exclude, without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
-from stiv.blender.settings import EditSettings, Exclusions
+from stiv.blender.settings import EditSettings
 from stiv.blender.verify.untested import find_untested
 from stiv.checks.findings import Untested
 from stiv.edge_contacts import edge_contacts
@@ -38,7 +39,7 @@ class SceneCheck:
         seams: number of pairs of faces of one object that touch only in coincident vertices or edges.
     """
 
-    pairs: tuple[FacePair, ...]
+    pairs: FacePairs
     objects: int
     triangles: int
     hidden: int
@@ -50,7 +51,7 @@ class SceneCheck:
     @property
     def triangle_pairs(self) -> int:
         """Number of intersecting pairs of triangles; a pair of faces may have several."""
-        return sum(pair.triangle_pairs for pair in self.pairs)
+        return int(self.pairs.triangle_pairs.sum())
 
 
 def read_surface(context: bpy.types.Context, objects: Collection[str] | None = None) -> Assembly:
@@ -85,9 +86,7 @@ def check_scene(
     return SceneCheck(pairs, len(names), triangles, scene.hidden, count, guard.choice, guard.reason, untested)
 
 
-def find_exclusions(
-    context: bpy.types.Context, settings: EditSettings | None = None
-) -> tuple[Exclusions, tuple[FacePair, ...]]:
+def find_exclusions(context: bpy.types.Context, settings: EditSettings | None = None) -> tuple[Exclusions, FacePairs]:
     """All intersecting pairs of faces as exclusions, and the pairs that cannot be excluded."""
     chosen = settings or EditSettings()
     scene, _ = read_guarded_scene(context, chosen, tested_names(context, chosen), strands=True)
@@ -109,7 +108,7 @@ def tested_names(
     return is_counted
 
 
-def find_pairs(assembly: Assembly, threads: int = 0, most: int = 0) -> tuple[FacePair, ...]:
+def find_pairs(assembly: Assembly, threads: int = 0, most: int = 0) -> FacePairs:
     """All intersecting pairs between bodies of the assembly, without seams.
 
     most: number of triangle pairs to name for each two meshes; 0: all.
@@ -129,14 +128,12 @@ def _first_of_each(assembly: Assembly, pairs: Indices, most: int) -> Indices:
     return np.asarray(pairs[np.sort(order[rank < most])], np.int32)
 
 
-def find_pairs_and_seams(
-    assembly: Assembly, threads: int = 0
-) -> tuple[tuple[FacePair, ...], list[tuple[str, Indices]]]:
+def find_pairs_and_seams(assembly: Assembly, threads: int = 0) -> tuple[FacePairs, list[tuple[str, Indices]]]:
     """The intersecting pairs; for each mesh, its object and the pairs of faces, (k, 2), that touch only on seams."""
     intersecting_triangles = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
     contacts = _edge_contacts(assembly, intersecting_triangles)
     pairs = find_face_pairs(assembly, assembly.positions, threads, intersecting_triangles[~contacts])
-    intersecting = {(pair.first.object, *sorted((pair.first.number, pair.second.number))) for pair in pairs}
+    among = pairs.by_objects()
     seams = []
     own, none = _own_triangles(assembly, intersecting_triangles[contacts]), np.empty((0, 2), np.int32)
     for number, (mesh, joins) in enumerate(zip(assembly.meshes, assembly.seams, strict=True)):
@@ -145,9 +142,9 @@ def find_pairs_and_seams(
         faces = np.concatenate([seam_pairs(joins, mesh.triangles, mesh.faces), touching])
         if len(touching):
             faces = np.unique(faces, axis=0)
-        if intersecting:
-            apart = [(mesh.owner.name, a, b) not in intersecting for a, b in faces.tolist()]
-            faces = faces[np.array(apart, np.bool_)]
+        if (cut := among.get((mesh.owner.name, mesh.owner.name))) is not None:
+            numbers = cut.number[cut.where(lambda first, second: first.kind == second.kind == "face")]
+            faces = faces[~np.isin(pair_codes(faces), pair_codes(numbers))]
         seams.append((mesh.owner.name, faces))
     return pairs, seams
 

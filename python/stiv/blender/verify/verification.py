@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+from stiv.blender.excluded_pairs import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import Element, FacePair, count_faces
+from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces, sides_of
 from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_tolerance, read_positions_of
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import without_excluded
+from stiv.blender.scene.exclusions import are_excluded, without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.modifier_stack import simulation_error
@@ -26,7 +27,6 @@ from stiv.blender.scene.triangulation_flips import (
     is_deformable,
     with_current_triangulation,
 )
-from stiv.blender.settings import Exclusions
 from stiv.blender.verify.both_diagonals import BothDiagonals
 from stiv.points import largest_difference
 
@@ -44,7 +44,7 @@ class Verification:
     """
 
     passed: bool
-    intersections: tuple[FacePair, ...] = ()
+    intersections: Sequence[FacePair] = ()
     message: str = ""
     flips: tuple[FaceTriangles, ...] = ()
 
@@ -107,7 +107,7 @@ class Verifier:
         message = _displacement_message(assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
-        if self._excluded.pairs:
+        if len(self._excluded):
             pairs = self._not_excluded(accepted, shown)
             if pairs:
                 return self._failure(pairs)
@@ -137,18 +137,18 @@ class Verifier:
                 return ()
         return find_flips(context, assembly, opened, lambda number: not len(uncertain.get(number, [number])))
 
-    def _not_excluded(self, accepted: Floats, shown: Floats) -> tuple[FacePair, ...]:
+    def _not_excluded(self, accepted: Floats, shown: Floats) -> FacePairs:
         """Intersecting pairs of a surface that are not excluded, or of excluded objects that the edit has parted.
 
         Only the end of the step is tested; the step is shorter than the rounding of single precision.
         """
         found = find_face_pairs(self.assembly, shown, self._threads)
-        others = without_excluded(found, self._excluded)
-        between = [pair for pair in set(found).difference(others) if pair.first.side != pair.second.side]
-        if not between:
-            return others
-        overlapping = {_objects(pair) for pair in find_face_pairs(self.assembly, accepted, self._threads)}
-        return (*others, *(pair for pair in between if _objects(pair) not in overlapping))
+        excluded = are_excluded(self._excluded, found)
+        between = excluded & found.where(lambda first, second: first.side != second.side)
+        if between.any():
+            overlapping = find_face_pairs(self.assembly, accepted, self._threads).sides()
+            excluded &= ~(between & found.where(lambda *both: sides_of(*both) not in overlapping))
+        return found.chosen(~excluded)
 
     def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
         pairs = without_excluded(
@@ -170,7 +170,7 @@ class Verifier:
             )
         )
 
-    def _failure(self, pairs: tuple[FacePair, ...], flips: tuple[FaceTriangles, ...] = ()) -> Verification:
+    def _failure(self, pairs: Sequence[FacePair], flips: tuple[FaceTriangles, ...] = ()) -> Verification:
         if not pairs:
             return Verification(False, (), "surfaces come too close in Blender; use a larger minimum distance")
         return Verification(False, pairs, _intersection_message(pairs), flips)
@@ -184,10 +184,6 @@ def _may_split(ob: bpy.types.Object) -> bool:
         if modifier.type in SPLITTING:
             return True
     return False
-
-
-def _objects(pair: FacePair) -> frozenset[str]:
-    return frozenset((pair.first.side, pair.second.side))
 
 
 def read_shown(context: bpy.types.Context, assembly: Assembly) -> Floats:
@@ -268,7 +264,7 @@ def _exceeds_tolerance(difference: float, points: Floats) -> bool:
     return not difference <= evaluation_tolerance(points)
 
 
-def _intersection_message(pairs: tuple[FacePair, ...]) -> str:
+def _intersection_message(pairs: Sequence[FacePair]) -> str:
     first, second = pairs[0].first, pairs[0].second
     shown_in = {VIEWPORT: "Object Mode", RENDER: "the render"}.get(second.evaluation, "the viewport")
     faces = count_faces(pairs)
