@@ -14,7 +14,7 @@ from stiv.blender.edit.kept_session import free_kept_data
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import ObjectsIntersectError
 from stiv.blender.edit.state_writer import WriteReport
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.correction import ToolCorrection, correct_after_tool

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from stiv import InputError
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.choices import (
     BOUNDARIES,
     DEFORMATIONS,

@@ -10,7 +10,7 @@ import numpy as np
 import stiv
 from stiv.blender.controls.garments import stacked_weights
 from stiv.blender.edit.sessions import ObjectsIntersectError, body_separations, open_session
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.arrays import Flags, Floats
 from stiv.blender.scene.exclusions import (

@@ -140,11 +140,14 @@ class FacePairs(Sequence[FacePair]):
     def by_objects(self) -> dict[tuple[str, str], FacePairs]:
         """The pairs of each two objects, whose names are in ascending order, or of one."""
         owners, numbers = self._pairs_of_owners()
-        names: dict[tuple[str, str], list[int]] = {}
+        names: dict[tuple[str, str], int] = {}
+        groups = np.empty(len(owners), np.int64)
         for number, (first, second) in enumerate(owners):
             a, b = sorted((first.object, second.object))
-            names.setdefault((a, b), []).append(number)
-        return {both: self.chosen(np.isin(numbers, chosen)) for both, chosen in names.items()}
+            groups[number] = names.setdefault((a, b), len(names))
+        group = groups[numbers]
+        rows = np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
+        return {both: self.chosen(own) for both, own in zip(names, rows, strict=False)}
 
     def _pairs_of_owners(self) -> tuple[list[tuple[Element, Element]], Indices]:
         """The different pairs of owners in the order of their first pair, and the number of its owners for each."""
@@ -158,9 +161,10 @@ class FacePairs(Sequence[FacePair]):
     def faces(self) -> list[tuple[Element, Indices]]:
         """Each owner of faces with the numbers of its faces, ascending."""
         codes = np.unique(_codes(self.owner, self.number))
-        owner, number = codes >> 32, (codes & 0xFFFFFFFF).astype(np.int32)
-        present = np.unique(owner).tolist()
-        return [(self.owners[k], number[owner == k]) for k in present if self.owners[k].kind == "face"]
+        present, firsts = np.unique(codes >> 32, return_index=True)
+        numbers = np.split((codes & 0xFFFFFFFF).astype(np.int32), firsts[1:])
+        owned = zip(present.tolist(), numbers, strict=False)
+        return [(self.owners[k], own) for k, own in owned if self.owners[k].kind == "face"]
 
 
 def sides_of(first: Element, second: Element) -> frozenset[str]:

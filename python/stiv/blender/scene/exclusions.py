@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import PART, Element, FacePair, FacePairs

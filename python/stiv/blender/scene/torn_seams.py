@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 import stiv
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats, Indices, pair_codes
 from stiv.blender.scene.assembly import ROUNDING, Assembly
 from stiv.blender.scene.elements import Element, FacePair, count_faces

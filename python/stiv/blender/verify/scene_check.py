@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiv
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Indices, pair_codes
 from stiv.blender.scene.assembly import Assembly, assemble, assemble_with_seams
 from stiv.blender.scene.elements import FacePairs

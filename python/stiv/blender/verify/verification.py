@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
-from stiv.blender.excluded_pairs import Exclusions
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces, sides_of

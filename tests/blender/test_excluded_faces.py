@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stiv.blender import Exclusions
-from stiv.blender.excluded_pairs import FaceKey
+from stiv.blender.excluded_faces import FaceKey
 
 Pair = tuple[FaceKey, FaceKey]
 
