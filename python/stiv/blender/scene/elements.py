@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -128,7 +128,7 @@ class FacePairs(Sequence[FacePair]):
 
     __hash__ = None  # type: ignore[assignment]
 
-    def chosen(self, rows: slice | Indices | NDArray[np.bool_]) -> FacePairs:
+    def chosen(self, rows: slice | NDArray[np.integer[Any]] | NDArray[np.bool_]) -> FacePairs:
         """Some of the pairs, by number or flag."""
         return FacePairs(self.owners, self.owner[rows], self.number[rows], self.triangle_pairs[rows])
 
