@@ -54,6 +54,27 @@ def test_parts_are_a_partition_and_tested_ones_share_no_vertex(joints: list[Join
             assert is_tested == (not vertices_of(first) & vertices_of(second))
 
 
+def test_each_loose_edge_lies_in_one_part_with_its_neighbours() -> None:
+    """Edges along the strip, one inside each region and limb, across their borders, and one apart from the strip."""
+    skin = strip()
+    count, along = len(skin.mesh.local), np.argsort(skin.mesh.world()[:, 0]).astype(np.int32)
+    pairs = np.stack([along[:-60:60], along[60::60][: len(along[:-60:60])]], axis=1)
+    edges = np.concatenate([pairs, [[count, count + 1]]]).astype(np.int32)
+    local = np.concatenate([skin.mesh.local, np.array([[0, 9, 0], [0, 9, 1]], np.float32)])
+    numbers = np.arange(7, 7 + len(edges), dtype=np.int32)
+    mesh = replace(skin.mesh, local=local, loose_edges=edges, loose_numbers=numbers)
+    weights = np.concatenate([skin.weights, [[0, 1, 0], [0, 1, 0]]])
+    regions = divide(Skin(mesh, skin.groups, weights), [FIRST, SECOND], 2.5)
+    assert sorted(np.concatenate([part.loose_numbers for part in regions.parts]).tolist()) == numbers.tolist()
+    for a, first in enumerate(regions.parts):
+        assert first.cropped is not None
+        for edge, number in zip(first.cropped.vertices[first.loose_edges], first.loose_numbers.tolist(), strict=True):
+            assert edge.tolist() == edges[number - 7].tolist()
+        for b, second in enumerate(regions.parts[:a]):
+            if not {(a, b), (b, a)} & regions.untested:
+                assert not vertices_of(first) & vertices_of(second)
+
+
 def test_regions_grow_with_their_radius_and_vanish_at_0() -> None:
     skin = strip()
     sizes = [divide(skin, [FIRST], radii).faces for radii in (0.0, 0.9, 1.5, 2.5)]

@@ -11,7 +11,7 @@ import numpy as np
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
-from stiv.blender.scene.torn_seams import self_cuts
+from stiv.blender.scene.torn_seams import cutting_triangles, self_cuts
 from stiv.seams import Seams
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
@@ -52,6 +52,19 @@ class Skin:
     def corners(self) -> Indices:
         """The triangles of the mesh, (f, 3), with the first copy of each vertex."""
         return self.mesh.triangles if self.seams is None else self.seams.leaders[self.mesh.triangles]
+
+    @property
+    def rows(self) -> Indices:
+        """The corners, and after them loose edges as triangles whose last two corners are the same, (f + l, 3)."""
+        loose = self.mesh.loose_edges if self.seams is None else self.seams.leaders[self.mesh.loose_edges]
+        return np.concatenate([self.corners, loose[:, [0, 1, 1]]])
+
+    @property
+    def owners(self) -> Indices:
+        """The face of each row, or a number of its own for a loose edge, (f + l,)."""
+        faces = self.mesh.faces
+        first = int(faces.max(initial=-1)) + 1
+        return np.concatenate([faces, np.arange(first, first + len(self.mesh.loose_edges), dtype=np.int32)])
 
     @property
     def is_first(self) -> Flags:
@@ -96,15 +109,15 @@ def divide_all(
 ) -> list[Regions]:
     """Divide meshes with the weights of bones at their vertices; jacobian: of all their vertices, (n, 3, k).
 
-    seams: vertices of each mesh that stay together; empty for none. A mesh that bends without weights of its own, or
-    with loose edges, is not tested against itself.
+    seams: vertices of each mesh that stay together; empty for none. A mesh that bends without weights of its own is not
+    tested against itself.
     """
     found, first, joins = [], 0, tuple(seams) or (None,) * len(meshes)
     for mesh, (groups, values), own in zip(meshes, weights, joins, strict=True):
         rows = jacobian[first : first + len(mesh.local)]
         first += len(mesh.local)
         regions = Regions((mesh,), frozenset(), 0, 0)
-        if len(groups) and not len(mesh.loose_edges):
+        if len(groups):
             regions = divide(Skin(mesh, groups, values, own), joints, radii)
         if radii > 0 and not regions.joints and _bends(mesh, rows):
             regions = replace(regions, untested=frozenset({(0, 0)}))
@@ -190,16 +203,20 @@ def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
 
 
 def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
-    """Divide a mesh without loose edges.
+    """Divide a mesh.
 
     radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region.
     """
-    mesh, corners, owners = skin.mesh, skin.corners, skin.mesh.faces
+    if radii <= 0 or not joints:
+        return Regions((skin.mesh,), frozenset(), 0, 0)
+    mesh, corners, owners = skin.mesh, skin.rows, skin.owners
     around, beside = np.zeros((2, len(mesh.local)), bool)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    for joint in joints if radii > 0 else ():
-        around |= _region(skin, joint, radii, edges)
-        beside |= _region(skin, joint, COLLAR * radii, edges)
+    cuts = cutting_triangles(mesh.world(), skin.corners)
+    mating = [cuts[_lies_between(skin, joint, cuts)] for joint in joints]
+    for joint, pairs in zip(joints, mating, strict=True):
+        around |= _region(skin, joint, radii, edges, pairs)
+        beside |= _region(skin, joint, COLLAR * radii, edges, pairs)
     in_joint = _of_faces(owners, np.any(around[corners], axis=1))
     if not in_joint.any():
         return Regions((mesh,), frozenset(), 0, 0)
@@ -207,9 +224,13 @@ def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
     in_collar = _of_faces(owners, np.any(beside[corners], axis=1)) & ~in_joint
     labels, count = _label(corners, [in_joint, in_collar, ~(in_joint | in_collar)])
     labels = _with_islands_joined(labels, count, _neighbours(corners, labels))
-    untested = _neighbours(corners, labels) | {(number, number) for number in range(count)}
+    neighbours = _neighbours(corners, labels)
+    pairs = np.concatenate(mating)
+    mated = _mated(labels[pairs[in_joint[pairs].all(axis=1)]], neighbours)
+    untested = neighbours | mated | {(number, number) for number in range(count)}
     parts = tuple(_part(mesh, number, labels == number) for number in range(labels.max() + 1))
-    return Regions(parts, frozenset(untested), count, len(np.unique(owners[in_joint])))
+    faces = np.unique(mesh.faces[in_joint[: len(mesh.faces)]])
+    return Regions(parts, frozenset(untested), count, len(faces))
 
 
 def _of_faces(owners: Indices, rows: Flags) -> Flags:
@@ -220,12 +241,38 @@ def _of_faces(owners: Indices, rows: Flags) -> Flags:
     return flags
 
 
-def _region(skin: Skin, joint: Joint, radii: float, edges: Indices) -> Flags:
-    """The vertices around a joint, (n,): connected to those that it bends, and near it."""
+def _lies_between(skin: Skin, joint: Joint, pairs: Indices) -> Flags:
+    """Flags the pairs of triangles, (k,), one of which follows a joint, and the other does not."""
+    follows = skin.share(joint.bones)[skin.corners[pairs]].mean(axis=2) >= 0.5
+    flags: Flags = follows[:, 0] != follows[:, 1]
+    return flags
+
+
+def _mated(pairs: Indices, neighbours: set[tuple[int, int]]) -> set[tuple[int, int]]:
+    """Pairs of parts, (k, 2), that cut each other in a joint, and each with the neighbours of the other."""
+    cutting = {(min(pair), max(pair)) for pair in np.unique(pairs, axis=0).tolist() if pair[0] != pair[1]}
+    beside: dict[int, set[int]] = {}
+    for a, b in neighbours:
+        beside.setdefault(a, set()).add(b)
+        beside.setdefault(b, set()).add(a)
+    found = set(cutting)
+    for a, b in cutting:
+        found |= {(min(a, each), max(a, each)) for each in beside.get(b, ())}
+        found |= {(min(b, each), max(b, each)) for each in beside.get(a, ())}
+    return found
+
+
+def _region(skin: Skin, joint: Joint, radii: float, edges: Indices, mating: Indices) -> Flags:
+    """The vertices around a joint, (n,): connected to those that it bends, and near it.
+
+    mating: pairs of triangles, (k, 2), that cut each other at the start, and that the joint turns against each other.
+    The pieces of a jointed machine have no others.
+    """
     share = skin.share(joint.bones)
     bent = (share > BLENDED[0]) & (share < BLENDED[1])
     crossing = (share[edges] < 0.5).any(axis=1) & (share[edges] >= 0.5).any(axis=1)
     bent[edges[crossing]] = True
+    bent[skin.corners[mating]] = True
     bent &= skin.is_first
     if not bent.any():
         return bent
@@ -290,11 +337,16 @@ def _neighbours(corners: Indices, labels: Indices) -> set[tuple[int, int]]:
 
 
 def _part(mesh: VisibleMesh, number: int, rows: Flags) -> VisibleMesh:
-    """Some triangles of a mesh."""
+    """Some triangles of a mesh, and after them some of its loose edges."""
+    chosen, loose = np.split(rows, [len(mesh.triangles)])
     used = np.zeros(len(mesh.local), bool)
-    used[mesh.triangles[rows]] = True
+    used[mesh.triangles[chosen]] = True
+    used[mesh.loose_edges[loose]] = True
     vertices, place = np.flatnonzero(used).astype(np.int32), (np.cumsum(used) - 1).astype(np.int32)
-    local, triangles, faces = mesh.local[vertices], place[mesh.triangles[rows]], mesh.faces[rows]
-    none = np.empty((0, 2), np.int32)
-    cropped = CroppedMesh(vertices, local, triangles, faces, none, none[:, 0], len(mesh.local))
-    return replace(mesh, local=local, triangles=triangles, faces=faces, cropped=cropped, part=number)
+    local, triangles, faces = mesh.local[vertices], place[mesh.triangles[chosen]], mesh.faces[chosen]
+    edges, numbers = place[mesh.loose_edges[loose]], mesh.loose_numbers[loose]
+    cropped = CroppedMesh(vertices, local, triangles, faces, edges, numbers, len(mesh.local))
+    return replace(
+        mesh, local=local, triangles=triangles, faces=faces, loose_edges=edges, loose_numbers=numbers, cropped=cropped,
+        part=number,
+    )  # fmt: skip

@@ -43,12 +43,20 @@ def self_cuts(points: Floats, corners: Indices, faces: Indices, threads: int = 0
 
     points: (n, 3). corners: of triangles, (f, 3). faces: of the triangles, (f,).
     """
+    found = faces[cutting_triangles(points, corners, threads)]
+    return {frozenset((a, b)) for a, b in found.tolist() if a != b}
+
+
+def cutting_triangles(points: Floats, corners: Indices, threads: int = 0) -> Indices:
+    """Pairs of triangles that intersect, (k, 2). Vertices that coincide count as one, as in checks.
+
+    points: (n, 3). corners: of triangles, (f, 3).
+    """
     seams = find_seams(points, corners, ROUNDING)
     joined = corners if seams is None else seams.leaders[corners]
-    proper = (joined != np.roll(joined, 1, axis=1)).all(axis=1)
-    owners = faces[proper]
-    found = owners[stiv.find_intersections(points, joined[proper], threads=threads)]
-    return {frozenset((a, b)) for a, b in found.reshape(-1, 2).tolist() if a != b}
+    proper = np.flatnonzero((joined != np.roll(joined, 1, axis=1)).all(axis=1)).astype(np.int32)
+    found: Indices = proper[stiv.find_intersections(points, joined[proper], threads=threads).reshape(-1, 2)]
+    return found
 
 
 def _cuts_at_seams(assembly: Assembly, number: int, excluded: Exclusions, q: Floats, threads: int) -> set[_Faces]:
