@@ -56,7 +56,7 @@ def bend(degrees: float, settings: EditSettings | None = None) -> tuple[Any, Ble
     return result, edit
 
 
-def farthest_cut(arm: Any) -> float:
+def furthest_cut(arm: Any) -> float:
     """The largest distance from the elbow of a face that cuts another one in Blender's evaluation."""
     shown = arm.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     shown.calc_loop_triangles()
@@ -67,7 +67,7 @@ def farthest_cut(arm: Any) -> float:
 
 def test_a_joint_of_two_pieces_turns() -> None:
     rig, arm = make_arm()
-    assert 0 < farthest_cut(arm) < REACH
+    assert 0 < furthest_cut(arm) < REACH
     result, edit = bend(60)
     assert result.status == "reached" and rig.pose.bones["Lower"].rotation_quaternion.angle == pytest.approx(np.pi / 3)
     assert any("Arm: " in note and "faces at joints may fold" in note for note in edit.start_notes)
@@ -78,10 +78,10 @@ def test_a_joint_of_two_pieces_turns() -> None:
 def test_pieces_collide_beyond_their_joint(with_antenna: bool) -> None:
     rig, arm = make_arm(with_antenna)
     _, edit = bend(175, EditSettings(interference=False))
-    assert farthest_cut(arm) > REACH
+    assert furthest_cut(arm) > REACH
     edit.restore()
     result, _ = bend(175)
-    assert result.status in ("corrected", "blocked") and farthest_cut(arm) < REACH
+    assert result.status in ("corrected", "blocked") and furthest_cut(arm) < REACH
     assert 1.5 < rig.pose.bones["Lower"].rotation_quaternion.angle < 3.0
 
 
