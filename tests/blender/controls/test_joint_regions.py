@@ -41,7 +41,7 @@ def vertices_of(part: VisibleMesh) -> set[int]:
 @pytest.mark.parametrize("joints", [[FIRST], [FIRST, SECOND]])
 def test_parts_are_a_partition_and_tested_ones_share_no_vertex(joints: list[Joint]) -> None:
     skin = strip()
-    regions = divide(skin, joints, 2.5)
+    regions = divide(skin, joints, 2.5).regions
     found = faces_of(regions)
     assert regions.joints == len(joints) and len(found) == 4 * len(joints) + 1
     assert sum(map(len, found)) == len(set().union(*found)) == 48 * 48
@@ -64,7 +64,7 @@ def test_each_loose_edge_lies_in_one_part_with_its_neighbours() -> None:
     numbers = np.arange(7, 7 + len(edges), dtype=np.int32)
     mesh = replace(skin.mesh, local=local, loose_edges=edges, loose_numbers=numbers)
     weights = np.concatenate([skin.weights, [[0, 1, 0], [0, 1, 0]]])
-    regions = divide(Skin(mesh, skin.groups, weights), [FIRST, SECOND], 2.5)
+    regions = divide(Skin(mesh, skin.groups, weights), [FIRST, SECOND], 2.5).regions
     assert sorted(np.concatenate([part.loose_numbers for part in regions.parts]).tolist()) == numbers.tolist()
     for a, first in enumerate(regions.parts):
         assert first.cropped is not None
@@ -77,11 +77,11 @@ def test_each_loose_edge_lies_in_one_part_with_its_neighbours() -> None:
 
 def test_regions_grow_with_their_radius_and_vanish_at_0() -> None:
     skin = strip()
-    sizes = [divide(skin, [FIRST], radii).faces for radii in (0.0, 0.9, 1.5, 2.5)]
+    sizes = [divide(skin, [FIRST], radii).regions.faces for radii in (0.0, 0.9, 1.5, 2.5)]
     assert sizes[0] == 0 and sizes == sorted(set(sizes))
-    assert divide(skin, [FIRST], 0.0).parts == (skin.mesh,)
+    assert divide(skin, [FIRST], 0.0).regions.parts == (skin.mesh,)
     yielding = Joint(FIRST.head, FIRST.bones, yields=True)
-    assert divide(skin, [yielding], 2.5).faces == sizes[2]
+    assert divide(skin, [yielding], 2.5).regions.faces == sizes[2]
 
 
 def test_copies_on_closed_seams_do_not_change_the_parts() -> None:
@@ -97,8 +97,8 @@ def test_copies_on_closed_seams_do_not_change_the_parts() -> None:
     split = replace(mesh, local=mesh.local[vertex], triangles=corners)
     seams = find_seams(split.local, corners)
     assert len(face) == len(split.local) == 4 * 48 * 48 and seams is not None
-    regions = divide(Skin(split, skin.groups, skin.weights[vertex], seams), [FIRST, SECOND], 2.5)
-    assert faces_of(regions) == faces_of(expected := divide(skin, [FIRST, SECOND], 2.5))
+    regions = divide(Skin(split, skin.groups, skin.weights[vertex], seams), [FIRST, SECOND], 2.5).regions
+    assert faces_of(regions) == faces_of(expected := divide(skin, [FIRST, SECOND], 2.5).regions)
     assert (regions.untested, regions.joints) == (expected.untested, expected.joints)
 
 

@@ -13,7 +13,7 @@ from stiv import InputError
 from stiv.blender.animation.animated_parts import AnimatedPart, Values
 from stiv.blender.animation.tracks import Track, lasting_seams
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
-from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note
+from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note, untested_parts
 from stiv.blender.controls.rig_twin import skin_weights
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -78,9 +78,8 @@ class Clip:
     @property
     def assembly(self) -> Assembly:
         """One surface of all meshes."""
-        rigid = {
-            (mesh.owner.name, 0, 0) for mesh, kind in zip(self.meshes, self._kinds, strict=True) if kind == "rigid"
-        }
+        stiff = {mesh.owner.name for mesh, kind in zip(self.meshes, self._kinds, strict=True) if kind == "rigid"}
+        rigid = {((name, 0), (name, 0)) for name in stiff}
         mobility = ["fixed" if kind == "still" else "deformable" for kind in self._kinds]
         passing = passing_pairs(self._context.scene)
         return assemble(self.meshes, mobility, (), passing, self._seams, self._untested | rigid)
@@ -232,12 +231,8 @@ class Clip:
         parts = [_parts_of(track.mesh, each) for track, each in zip(tracks, regions, strict=True)]
         self.regions = tuple(regions)
         self.note = joint_note([track.mesh for track in tracks], regions)
-        self._untested = {
-            (track.mesh.owner.name, *pair)
-            for track, each in zip(tracks, regions, strict=True)
-            for pair in each.untested
-        }
-        self.divided = frozenset(name for name, _, _ in self._untested)
+        self._untested = untested_parts([track.mesh for track in tracks], regions)
+        self.divided = frozenset(frozenset((first, second)) for (first, _), (second, _) in self._untested)
         self.meshes = tuple(part for own in parts for part in own)
         self._kinds = [track.kind for track, own in zip(tracks, parts, strict=True) for _ in own]
         self._seams = [seams_of_part(each, part) for each, own in zip(seams, parts, strict=True) for part in own]

@@ -139,9 +139,7 @@ class _Solver:
     def _options(self, separation: float, threads: int) -> stiv.EditOptions:
         frames = storage_frames([(len(each.controls), each.frame) for each in self._moving_sets])
         weights = np.concatenate([np.full(len(each.controls), each.weight) for each in self._moving_sets])
-        return stiv.EditOptions(
-            separation=separation, weights=weights, single_precision=bool(frames), storage=frames, threads=threads
-        )
+        return stiv.EditOptions(separation=separation, weights=weights, storage=frames, threads=threads)
 
 
 def _session(

@@ -85,12 +85,7 @@ def remaining(
     moments = add_subframe_keys(moments_of(frames))
     bad = Corrector(clip, frames, settings, options.acceleration).intersecting(moments)
     looks = check_frames(context, moments, evaluations=evaluations)
-    found = [
-        str(each)
-        for look in looks
-        for each in look.findings
-        if not (each.objects[0] == each.objects[1] and each.objects[0] in clip.divided)
-    ]
+    found = [str(each) for look in looks for each in look.findings if frozenset(each.objects) not in clip.divided]
     return found or [f"frame {moment:g}: the skin intersects itself" for moment in bad]
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Flags, Floats, Indices
-from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.assembly import Assembly, UntestedParts
 from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
-from stiv.blender.scene.torn_seams import cutting_triangles, self_cuts
+from stiv.blender.scene.torn_seams import cutting_triangles
 from stiv.seams import Seams
 
 BLENDED = (0.02, 0.98)  # shares of a bone in vertices that its joint bends
@@ -89,14 +91,35 @@ class Regions:
     Attributes:
         parts: the meshes; one if it has no joints.
         untested: pairs of parts that are not tested against each other, a part with itself included.
-        joints: number of regions around joints.
+        joints: number of regions around joints; they are the first parts.
         faces: number of their faces.
+        mates: further such pairs, also with parts of other meshes: part, name of the other object, its part.
     """
 
     parts: tuple[VisibleMesh, ...]
     untested: frozenset[tuple[int, int]]
     joints: int
     faces: int
+    mates: frozenset[tuple[int, str, int]] = frozenset()
+
+
+@dataclass(frozen=True)
+class Division:
+    """A mesh in parts, and where its triangles are.
+
+    Attributes:
+        regions: the parts.
+        labels: the part of each triangle, and after them of each loose edge, (f + l,).
+        neighbours: pairs of parts that share a vertex, ascending.
+    """
+
+    regions: Regions
+    labels: Indices
+    neighbours: frozenset[tuple[int, int]]
+
+    def touching(self, part: int) -> set[int]:
+        """A part, and those that share a vertex with it."""
+        return {part}.union(*(pair for pair in self.neighbours if part in pair))
 
 
 def divide_all(
@@ -112,17 +135,26 @@ def divide_all(
     seams: vertices of each mesh that stay together; empty for none. A mesh that bends without weights of its own is not
     tested against itself.
     """
-    found, first, joins = [], 0, tuple(seams) or (None,) * len(meshes)
-    for mesh, (groups, values), own in zip(meshes, weights, joins, strict=True):
-        rows = jacobian[first : first + len(mesh.local)]
-        first += len(mesh.local)
-        regions = Regions((mesh,), frozenset(), 0, 0)
-        if len(groups):
-            regions = divide(Skin(mesh, groups, values, own), joints, radii)
-        if radii > 0 and not regions.joints and _bends(mesh, rows):
-            regions = replace(regions, untested=frozenset({(0, 0)}))
-        found.append(regions)
+    joins = tuple(seams) or (None,) * len(meshes)
+    skins = [Skin(mesh, *each, own) for mesh, each, own in zip(meshes, weights, joins, strict=True)]
+    mating = find_mating(skins, joints if radii > 0 else ())
+    divisions = [divide(skin, joints, radii, flags) for skin, flags in zip(skins, mating.flags, strict=True)]
+    found = [replace(each.regions, mates=mates) for each, mates in zip(divisions, mating.mates(divisions), strict=True)]
+    ends = np.cumsum([len(mesh.local) for mesh in meshes])[:-1]
+    for number, (mesh, rows) in enumerate(zip(meshes, np.split(jacobian, ends), strict=True)):
+        if radii > 0 and not found[number].joints and _bends(mesh, rows):
+            found[number] = replace(found[number], untested=frozenset({(0, 0)}))
     return found
+
+
+def untested_parts(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> frozenset[UntestedParts]:
+    """All pairs of parts of meshes that are not tested."""
+    found: set[UntestedParts] = set()
+    for mesh, each in zip(meshes, regions, strict=True):
+        name = mesh.owner.name
+        found |= {((name, a), (name, b)) for a, b in each.untested}
+        found |= {((name, a), (other, b)) for a, other, b in each.mates}
+    return frozenset(found)
 
 
 def smallest_altitude(mesh: VisibleMesh) -> float:
@@ -144,53 +176,75 @@ def joint_note(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> str
 
 
 def fold_note(
-    assembly: Assembly, surfaces: Sequence[int], untested: frozenset[tuple[str, int, int]], q: Floats, threads: int = 0
+    assembly: Assembly, surfaces: Sequence[int], untested: frozenset[UntestedParts], q: Floats, threads: int = 0
 ) -> str:
     """The message on untested faces that cut into each other at positions `q`, (N, 3), and did not at the start.
 
     "" if there are none. surfaces: numbers of the meshes that bones bend. untested: pairs of their parts.
     """
-    for numbers in _divided_meshes(assembly, surfaces):
-        name = assembly.meshes[numbers[0]].owner.name
-        parts = frozenset((a, b) for owner, a, b in untested if owner == name)
-        found = _folds(assembly, numbers, parts, q, threads)
-        folded = found and found - _folds(assembly, numbers, parts, assembly.positions, threads)
+    for evaluation in dict.fromkeys(assembly.meshes[number].read_from for number in surfaces):
+        numbers = [number for number in surfaces if assembly.meshes[number].read_from == evaluation]
+        found = _folds(assembly, numbers, untested, q, threads)
+        folded = found and found - _folds(assembly, numbers, untested, assembly.positions, threads)
         if folded:
-            return f"{name}: {len(frozenset().union(*folded)):,} faces at joints cut into each other"
+            faces = sorted(frozenset().union(*folded))
+            return f"{faces[0][0]}: {len(faces):,} faces at joints cut into each other"
     return ""
 
 
-def _divided_meshes(assembly: Assembly, surfaces: Sequence[int]) -> list[list[int]]:
-    """The numbers of the parts of each mesh; an object may show one mesh in the viewport and another in the render."""
-    found: list[list[int]] = []
-    for number in surfaces:
-        if assembly.meshes[number].part == 0:
-            found.append([])
-        found[-1].append(number)
-    return found
+_Face = tuple[str, int]  # object and number
 
 
 def _folds(
-    assembly: Assembly, numbers: Sequence[int], untested: frozenset[tuple[int, int]], q: Floats, threads: int
-) -> set[frozenset[int]]:
-    """Pairs of faces of one mesh that intersect at positions `q`, (N, 3), in parts that are not tested."""
-    meshes = [assembly.meshes[number] for number in numbers]
+    assembly: Assembly, numbers: Sequence[int], untested: frozenset[UntestedParts], q: Floats, threads: int
+) -> set[frozenset[_Face]]:
+    """Pairs of faces that intersect at positions `q`, (N, 3), in parts of meshes that are not tested."""
     if not untested:
         return set()
-    rows = [np.arange(len(each.local)) if each.cropped is None else each.cropped.vertices for each in meshes]
-    count = max(int(each.max(initial=-1)) for each in rows) + 1
-    points = np.tile(q[assembly.starts[numbers[0]]], (count, 1))  # also of vertices without faces
-    for number, each in zip(numbers, rows, strict=True):
-        points[each] = q[assembly.vertices(number)]
-    corners = np.concatenate([each[mesh.triangles] for each, mesh in zip(rows, meshes, strict=True)])
-    part = {face: mesh.part for mesh in meshes for face in mesh.faces.tolist()}
-    pairs = self_cuts(points, corners, np.concatenate([mesh.faces for mesh in meshes]), threads)
+    whole: dict[str, _Whole] = {}
+    for number in numbers:
+        whole.setdefault(assembly.meshes[number].owner.name, _Whole()).add(assembly, number, q)
+    points, corners, faces, first = [], [], [], 0
+    for name, each in whole.items():
+        points.append(each.points())
+        corners.append(np.concatenate(each.corners) + first)
+        faces += [(name, part, face) for part, own in each.faces for face in own.tolist()]
+        first += len(points[-1])
+    pairs = cutting_triangles(np.concatenate(points), np.concatenate(corners).astype(np.int32), threads)
+    found = set()
+    for i, j in pairs.tolist():
+        (name, p, face), (other, r, last) = faces[i], faces[j]
+        if (name, face) != (other, last) and not untested.isdisjoint(
+            {((name, p), (other, r)), ((other, r), (name, p))}
+        ):
+            found.add(frozenset({(name, face), (other, last)}))
+    return found
 
-    def is_untested(pair: frozenset[int]) -> bool:
-        a, b = (part[face] for face in pair)
-        return (a, b) in untested or (b, a) in untested
 
-    return set(filter(is_untested, pairs))
+class _Whole:
+    """A divided mesh as one again: vertices that parts share are one, as in Blender's mesh."""
+
+    def __init__(self) -> None:
+        self.corners: list[Indices] = []
+        self.faces: list[tuple[int, Indices]] = []
+        self._rows: list[Indices] = []
+        self._points: list[Floats] = []
+
+    def add(self, assembly: Assembly, number: int, q: Floats) -> None:
+        """Add a part at positions `q`, (N, 3)."""
+        mesh = assembly.meshes[number]
+        rows = np.arange(len(mesh.local), dtype=np.int32) if mesh.cropped is None else mesh.cropped.vertices
+        self._rows.append(rows)
+        self._points.append(q[assembly.vertices(number)])
+        self.corners.append(rows[mesh.triangles])
+        self.faces.append((mesh.part, mesh.faces))
+
+    def points(self) -> Floats:
+        """All vertices, (n, 3), also those without faces."""
+        rows, points = np.concatenate(self._rows), np.concatenate(self._points)
+        found = np.tile(points[:1], (int(rows.max(initial=-1)) + 1, 1))
+        found[rows] = points
+        return found
 
 
 def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
@@ -202,35 +256,31 @@ def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
     return bool((np.abs(change) > BENDING * (along * along).sum(axis=1)[:, None] + 1e-12).any())
 
 
-def divide(skin: Skin, joints: Sequence[Joint], radii: float) -> Regions:
+def divide(skin: Skin, joints: Sequence[Joint], radii: float, mating: Sequence[Flags] = ()) -> Division:
     """Divide a mesh.
 
-    radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region.
+    radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region. mating: for each
+    joint, flags of the vertices, (n,), of triangles that cut others across it.
     """
-    if radii <= 0 or not joints:
-        return Regions((skin.mesh,), frozenset(), 0, 0)
     mesh, corners, owners = skin.mesh, skin.rows, skin.owners
     around, beside = np.zeros((2, len(mesh.local)), bool)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-    cuts = cutting_triangles(mesh.world(), skin.corners)
-    mating = [cuts[_lies_between(skin, joint, cuts)] for joint in joints]
-    for joint, pairs in zip(joints, mating, strict=True):
-        around |= _region(skin, joint, radii, edges, pairs)
-        beside |= _region(skin, joint, COLLAR * radii, edges, pairs)
+    for number, joint in enumerate(joints if radii > 0 else ()):
+        flags = mating[number] if len(mating) else np.zeros(len(mesh.local), bool)
+        around |= _region(skin, joint, radii, edges, flags)
+        beside |= _region(skin, joint, COLLAR * radii, edges, flags)
     in_joint = _of_faces(owners, np.any(around[corners], axis=1))
     if not in_joint.any():
-        return Regions((mesh,), frozenset(), 0, 0)
+        return Division(Regions((mesh,), frozenset(), 0, 0), np.zeros(len(corners), np.int32), frozenset())
     beside[corners[in_joint]] = True
     in_collar = _of_faces(owners, np.any(beside[corners], axis=1)) & ~in_joint
     labels, count = _label(corners, [in_joint, in_collar, ~(in_joint | in_collar)])
     labels = _with_islands_joined(labels, count, _neighbours(corners, labels))
     neighbours = _neighbours(corners, labels)
-    pairs = np.concatenate(mating)
-    mated = _mated(labels[pairs[in_joint[pairs].all(axis=1)]], neighbours)
-    untested = neighbours | mated | {(number, number) for number in range(count)}
+    untested = neighbours | {(number, number) for number in range(count)}
     parts = tuple(_part(mesh, number, labels == number) for number in range(labels.max() + 1))
     faces = np.unique(mesh.faces[in_joint[: len(mesh.faces)]])
-    return Regions(parts, frozenset(untested), count, len(faces))
+    return Division(Regions(parts, frozenset(untested), count, len(faces)), labels, frozenset(neighbours))
 
 
 def _of_faces(owners: Indices, rows: Flags) -> Flags:
@@ -241,38 +291,79 @@ def _of_faces(owners: Indices, rows: Flags) -> Flags:
     return flags
 
 
-def _lies_between(skin: Skin, joint: Joint, pairs: Indices) -> Flags:
-    """Flags the pairs of triangles, (k,), one of which follows a joint, and the other does not."""
-    follows = skin.share(joint.bones)[skin.corners[pairs]].mean(axis=2) >= 0.5
-    flags: Flags = follows[:, 0] != follows[:, 1]
-    return flags
+@dataclass(frozen=True)
+class Mating:
+    """Triangles that cut each other at the start, and that a joint turns against each other.
 
+    The stiff pieces of a machine have no skin that bends; what they have in common at a joint is this.
 
-def _mated(pairs: Indices, neighbours: set[tuple[int, int]]) -> set[tuple[int, int]]:
-    """Pairs of parts, (k, 2), that cut each other in a joint, and each with the neighbours of the other."""
-    cutting = {(min(pair), max(pair)) for pair in np.unique(pairs, axis=0).tolist() if pair[0] != pair[1]}
-    beside: dict[int, set[int]] = {}
-    for a, b in neighbours:
-        beside.setdefault(a, set()).add(b)
-        beside.setdefault(b, set()).add(a)
-    found = set(cutting)
-    for a, b in cutting:
-        found |= {(min(a, each), max(a, each)) for each in beside.get(b, ())}
-        found |= {(min(b, each), max(b, each)) for each in beside.get(a, ())}
-    return found
-
-
-def _region(skin: Skin, joint: Joint, radii: float, edges: Indices, mating: Indices) -> Flags:
-    """The vertices around a joint, (n,): connected to those that it bends, and near it.
-
-    mating: pairs of triangles, (k, 2), that cut each other at the start, and that the joint turns against each other.
-    The pieces of a jointed machine have no others.
+    Attributes:
+        names: of the objects of all meshes.
+        flags: for each mesh and each joint, the vertices of such triangles, (n,).
+        pairs: mesh and triangle of both, (k, 4).
     """
+
+    names: Sequence[str]
+    flags: Sequence[Sequence[Flags]]
+    pairs: Indices
+
+    def mates(self, divisions: Sequence[Division]) -> list[frozenset[tuple[int, str, int]]]:
+        """Of each mesh, the parts around joints that cut others there, and each with the neighbours of the other."""
+        parts = [each.labels for each in divisions]
+        first, second = (_gather(parts, self.pairs[:, k : k + 2]) for k in (0, 2))
+        rows = np.unique(np.stack([self.pairs[:, 0], first, self.pairs[:, 2], second], axis=1), axis=0)
+        found: list[set[tuple[int, str, int]]] = [set() for _ in divisions]
+        for a, p, b, q in rows.tolist():
+            if p < divisions[a].regions.joints and q < divisions[b].regions.joints and (a, p) != (b, q):
+                found[a] |= {(each, self.names[b], q) for each in divisions[a].touching(p)}
+                found[a] |= {(p, self.names[b], each) for each in divisions[b].touching(q)}
+        return [frozenset(each) for each in found]
+
+
+def find_mating(skins: Sequence[Skin], joints: Sequence[Joint]) -> Mating:
+    """The triangles of meshes that joints turn against each other and that cut at the start."""
+    flags = [[np.zeros(len(skin.mesh.local), bool) for _ in joints] for skin in skins]
+    pairs = [np.empty((0, 4), np.int32)]
+    for evaluation in dict.fromkeys(skin.mesh.read_from for skin in skins):
+        numbers = [number for number, skin in enumerate(skins) if skin.mesh.read_from == evaluation]
+        cuts = _cuts([skins[number] for number in numbers])
+        cuts[:, ::2] = np.array(numbers, np.int32)[cuts[:, ::2]]
+        for place, joint in enumerate(joints if len(cuts) else ()):
+            follows = [skin.share(joint.bones)[skin.corners].mean(axis=1) >= 0.5 for skin in skins]
+            between = cuts[_gather(follows, cuts[:, :2]) != _gather(follows, cuts[:, 2:])]
+            mesh, triangle = between.reshape(-1, 2).T
+            for number in np.unique(mesh).tolist():
+                flags[number][place][skins[number].corners[triangle[mesh == number]]] = True
+            pairs.append(between)
+    return Mating([skin.mesh.owner.name for skin in skins], flags, np.concatenate(pairs))
+
+
+def _gather(values: Sequence[NDArray[Any]], places: Indices) -> NDArray[Any]:
+    """The values of triangles by mesh and number, (k, 2)."""
+    starts = np.cumsum([0, *map(len, values)])[:-1]
+    return np.concatenate(values)[starts[places[:, 0]] + places[:, 1]]
+
+
+def _cuts(skins: Sequence[Skin]) -> Indices:
+    """Mesh and triangle of each two that cut each other, (k, 4)."""
+    counts = [len(skin.mesh.local) for skin in skins]
+    starts = np.cumsum([0, *counts]).astype(np.int32)
+    points = np.concatenate([skin.mesh.world() for skin in skins])
+    corners = [skin.corners + start for skin, start in zip(skins, starts[:-1], strict=True)]
+    found = cutting_triangles(points, np.concatenate(corners))
+    ends = np.cumsum([len(each) for each in corners])
+    mesh = np.searchsorted(ends, found, side="right")
+    triangle = found - np.concatenate([[0], ends])[mesh]
+    return np.stack([mesh, triangle], axis=2).reshape(-1, 4).astype(np.int32)
+
+
+def _region(skin: Skin, joint: Joint, radii: float, edges: Indices, mating: Flags) -> Flags:
+    """The vertices around a joint, (n,): connected to those that it bends or that mate there, and near it."""
     share = skin.share(joint.bones)
     bent = (share > BLENDED[0]) & (share < BLENDED[1])
     crossing = (share[edges] < 0.5).any(axis=1) & (share[edges] >= 0.5).any(axis=1)
     bent[edges[crossing]] = True
-    bent[skin.corners[mating]] = True
+    bent |= mating
     bent &= skin.is_first
     if not bent.any():
         return bent

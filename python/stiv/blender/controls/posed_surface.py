@@ -12,7 +12,7 @@ import stiv
 from stiv.blender.controls.bone_channels import BoneChannels
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
 from stiv.blender.controls.garments import Blocks, Garment, rows_of_blocks
-from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note
+from stiv.blender.controls.joint_regions import Joint, divide_all, joint_note, untested_parts
 from stiv.blender.controls.rig_twin import MISSING, PosedMesh, RigTwin
 from stiv.blender.scene.arrays import Flags, Floats, Indices
 from stiv.blender.scene.assembly import mesh_seams
@@ -38,7 +38,7 @@ class PosedSurface:
         seams: for each of them, the vertices that stay together.
         opened: world positions of all vertices, (n, 3), at the pose nearest to the start in which one of these seams
             opened; None if none has.
-        untested: pairs of parts that are not tested against each other, with the name of the object.
+        untested: pairs of parts that are not tested against each other.
         note: on the faces at joints; "" without any.
     """
 
@@ -73,8 +73,7 @@ class PosedSurface:
         self.seams = tuple(
             seams_of_part(own, part) for own, each in zip(closed, regions, strict=True) for part in each.parts
         )
-        pairs = zip(moved, regions, strict=True)
-        self.untested = frozenset((mesh.owner.name, a, b) for mesh, each in pairs for a, b in each.untested)
+        self.untested = untested_parts(moved, regions)
         self.note = joint_note(moved, regions)
         places = _places_of(moved, [self.meshes[k] for k in self.surfaces])
         vertices = MergedRows.of(places, self.seams, np.concatenate([mesh.world() for mesh in moved]))

@@ -106,8 +106,13 @@ class RigTwin:
 
 
 def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) -> tuple[list[str], Floats]:
-    """Names of the bones that have vertex groups, and their weights, (n, g), at n vertices of an evaluated object."""
+    """Names of the bones that have vertex groups, and their weights, (n, g), at n vertices of an evaluated object.
+
+    An object without such groups has the weight 1 for the bone that is its parent, or that of one of its parents.
+    """
     names = [group.name for group in shown.vertex_groups if group.name in bones] if shown.type == "MESH" else []
+    if not names and (carrier := _carrier(shown, bones)):
+        return [carrier], np.ones((count, 1))
     result = np.zeros((count, len(names)))
     column = {shown.vertex_groups[name].index: k for k, name in enumerate(names)}
     with evaluated_mesh(shown) as mesh:
@@ -117,6 +122,16 @@ def skin_weights(shown: bpy.types.Object, bones: Collection[str], count: int) ->
                     if group.group in column:
                         result[row, column[group.group]] = group.weight
     return names, result
+
+
+def _carrier(shown: bpy.types.Object, bones: Collection[str]) -> str:
+    """The bone that carries an object; "" for none."""
+    ob: bpy.types.Object | None = shown
+    while ob is not None:
+        if ob.parent_type == "BONE" and ob.parent_bone in bones:
+            return str(ob.parent_bone)
+        ob = ob.parent
+    return ""
 
 
 def has_drivers(owner: bpy.types.ID | None) -> bool:

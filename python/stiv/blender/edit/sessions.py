@@ -72,7 +72,6 @@ def session_options(
         weight_axes=axes_of_all(control_sets),
         exclude=exclude,
         overlapping=excluded_bodies(settings.excluded, assembly),
-        single_precision=bool(frames),
         storage=frames,
     )
 
@@ -103,11 +102,12 @@ def _skin_separations(
     as an approach.
     """
     found: dict[tuple[str | int, str | int], float] = {}
+    kept = 4 * float(np.spacing(np.float32(np.abs(assembly.positions).max(initial=0))))  # the least in storage
     for index in (index for each in control_sets if each.posed is not None for index in each.surfaces):
         mesh = assembly.meshes[index]
         if settings.separation > 0 and len(mesh.triangles):
             body = int(assembly.surface.vertex_body[assembly.starts[index]])
-            least = min(settings.separation, SKIN * smallest_altitude(mesh))
+            least = min(settings.separation, max(kept, SKIN * smallest_altitude(mesh)))
             found[body, body] = min(least, found.get((body, body), least))
     return found
 
@@ -188,10 +188,15 @@ def split_controls(controls: Floats, control_sets: Sequence[ControlSet]) -> list
 
 
 def storage_frames(stored: Sequence[tuple[int, Floats | None]]) -> list[stiv.StorageFrame]:
-    """How stacked controls are stored, from the number and frame of each control set."""
+    """How stacked controls are stored, from the number and frame of each control set.
+
+    Without any frame, one for no controls: Blender evaluates their surface in single precision all the same, and its
+    rounding must not count as penetration.
+    """
     firsts = np.cumsum([0, *(count for count, _ in stored)]).tolist()
     rows = zip(firsts, stored, strict=False)
-    return [stiv.StorageFrame(first, count, frame) for first, (count, frame) in rows if frame is not None]
+    frames = [stiv.StorageFrame(first, count, frame) for first, (count, frame) in rows if frame is not None]
+    return frames or [stiv.StorageFrame(0, 0, np.eye(4))]
 
 
 def write_controls(control_sets: Sequence[ControlSet], controls: Floats, start: Floats) -> None:

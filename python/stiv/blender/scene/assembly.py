@@ -20,7 +20,8 @@ from stiv.seams import Seams, find_seams
 ROUNDING = 2.0**-19  # of an object's extent; Blender computes the copies of a seam separately, in single precision
 
 _Body = tuple[str, str, frozenset[str], frozenset[str], int]  # object, mobility, evaluations, roots of strands, part
-Untested = Collection[tuple[str, int, int]]  # an object, and two parts of its mesh
+UntestedParts = tuple[tuple[str, int], tuple[str, int]]
+"""Two parts of meshes, each by the name of its object and its number, that are not tested against each other."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,7 @@ def assemble(
     together: Sequence[frozenset[str]] = (),
     ignored: Sequence[tuple[str, str]] = (),
     seams: Sequence[Seams | None] = (),
-    untested: Untested = (),
+    untested: Collection[UntestedParts] = (),
 ) -> Assembly:
     """Assemble meshes into one surface.
 
@@ -221,7 +222,7 @@ def _ignored_bodies(
     bodies: Mapping[_Body, int],
     together: Sequence[frozenset[str]],
     ignored: Sequence[tuple[str, str]],
-    untested: frozenset[tuple[str, int, int]],
+    untested: frozenset[UntestedParts],
 ) -> list[tuple[int, int]]:
     pairs = set()
     for (first, kind, here, roots, part), a in bodies.items():
@@ -230,8 +231,8 @@ def _ignored_bodies(
                 continue
             rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
             rooted = first in grown or second in roots
-            folds = first == second and not untested.isdisjoint(
-                {(first, part, part_of_other), (first, part_of_other, part)}
+            folds = not untested.isdisjoint(
+                {((first, part), (second, part_of_other)), ((second, part_of_other), (first, part))}
             )
             if rigid or rooted or folds or not here & there or (first, second) in ignored or (second, first) in ignored:
                 pairs.add((a, b))
