@@ -114,7 +114,7 @@ def test_pieces_collide_beyond_their_joint(kind: str, antenna: bool) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_pieces_that_cut_each_other_turn_together(kind: str) -> None:
-    """Blender rounds them anew for each angle, which does not count as deeper."""
+    """At each angle, Blender rounds them in another way, which does not count as deeper."""
     rig, pieces = make_arm(kind)
     select_bones(rig, "Upper")
     for degrees in (20, 33, -70, 5):
