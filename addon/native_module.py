@@ -6,6 +6,7 @@ from __future__ import annotations
 import functools
 import importlib
 import sys
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -19,6 +20,17 @@ else:
         """Base of the operators' mixins; without bpy, which tests of this module do not need."""
 
 
+_calls: list[Callable[[], object]] | None = []  # due once the module is loaded; None from then on
+
+
+def when_loaded(call: Callable[[], object]) -> None:
+    """Make a call once the native module is loaded; at once if it is."""
+    if _calls is None:
+        call()
+    else:
+        _calls.append(call)
+
+
 @functools.cache
 def problem() -> str:
     """Why the add-on cannot run, one sentence a line; empty if it can. Determined once per session."""
@@ -27,7 +39,15 @@ def problem() -> str:
         importlib.import_module("stiv.blender")
     except ImportError as error:
         return _explanation(error)
+    _make_calls()
     return ""
+
+
+def _make_calls() -> None:
+    global _calls
+    due, _calls = _calls or (), None
+    for call in due:
+        call()
 
 
 def _explanation(error: ImportError) -> str:

@@ -16,7 +16,7 @@ from . import (
     properties,
     translations,
 )
-from .guard import waiting, watcher
+from .guard import completion, waiting, watcher
 from .operators import classes, running
 from .overlay import display
 from .tools import gizmo_group, live_switch, toolbar
@@ -46,6 +46,7 @@ def register() -> None:
     manual.register()
     loop_updates.register()
     watcher.register()
+    completion.register()
     display.register()
     toolbar.register()
     header.register()
@@ -59,6 +60,7 @@ def unregister() -> None:
     header.unregister()
     toolbar.unregister()
     display.unregister()
+    completion.unregister()
     watcher.unregister()
     loop_updates.unregister()
     manual.unregister()

@@ -17,6 +17,8 @@ from .decision import UndoStep
 # "[*#M ]   2 {0x5645b489f9f8} type='Global Undo', name='Move'"
 _ACTIVE = re.compile(r"^\[\*[^]]*\]\s*(\d+) \{(\w+)\} type='([^']*)', name='(.*)'\r?$", re.MULTILINE)
 _LATER = re.compile(r"^\[\*.*^\[[^S\]]*\]", re.MULTILINE | re.DOTALL)  # a step after the active one that can be redone
+# Before the active step, one that Blender skips: the whole file at the same time.
+_COMPLETE = re.compile(r"^\[[^*\]]*S\][^\n]*type='Global Undo'[^\n]*\n\[\*", re.MULTILINE)
 
 
 def active_step() -> UndoStep | None:
@@ -33,11 +35,32 @@ def complete_active(window: bpy.types.Window) -> None:
     _complete(window, _stack())
 
 
-def complete_last(window: bpy.types.Window) -> None:
-    """`complete_active`, unless steps could be redone: these would go."""
+def complete_last(window: bpy.types.Window) -> bool:
+    """`complete_active`, unless the step is complete.
+
+    False if steps could be redone: Blender would drop them.
+    """
     text = _stack()
-    if not _LATER.search(text):
-        _complete(window, text)
+    if _COMPLETE.search(text):
+        return True
+    if _LATER.search(text):
+        return False
+    _complete(window, text)
+    return True
+
+
+def add_start() -> None:
+    """Add a step like the active one if that is not complete: an operator with a step of its own cannot replace it."""
+    text = _stack()
+    found = _incomplete(text)
+    if found is not None and not _COMPLETE.search(text):
+        store_file_next()
+        push(bpy.context.window or bpy.context.window_manager.windows[0], found[4])
+
+
+def store_file_next() -> None:
+    """Let Blender store the whole file before its next step of an edit mode."""
+    bpy.data.texts.remove(bpy.data.texts.new("STIV"))
 
 
 def parse(text: str) -> UndoStep | None:
@@ -78,10 +101,16 @@ def push(window: bpy.types.Window, name: str) -> None:
 
 
 def _complete(window: bpy.types.Window, text: str) -> None:
-    found = _ACTIVE.search(text)
-    if found is not None and found[3] != "Global Undo":
-        bpy.data.texts.remove(bpy.data.texts.new("STIV"))
+    found = _incomplete(text)
+    if found is not None:
+        store_file_next()
         replace_active(window, found[4])
+
+
+def _incomplete(text: str) -> re.Match[str] | None:
+    """The active step, if that is a step of an edit mode."""
+    found = _ACTIVE.search(text)
+    return None if found is None or found[3] == "Global Undo" else found
 
 
 def _stack() -> str:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 from bpy.app.handlers import persistent
@@ -15,7 +15,7 @@ from ..operators import last_edit
 from ..operators.reports import error_text
 from ..translations import translate
 from . import alerts, correction, undo_steps, waiting
-from .decision import POLL_INTERVAL, Action, Guard, Observation, decide, is_new_result
+from .decision import POLL_INTERVAL, Action, Guard, Observation, UndoStep, decide, is_new_result
 from .problem import Problem
 from .record import Record
 
@@ -33,7 +33,6 @@ class Watch:
         frame: the frame of the last observation.
         uncorrected: results of tools that still intersect, counted since the guard was turned on.
         correction: the one that runs now; its writes are not observed.
-        copies: made for evaluations until the last test.
     """
 
     def __init__(self) -> None:
@@ -47,7 +46,6 @@ class Watch:
         self.uncorrected = 0
         self.working = False
         self.correction: _Correction | None = None
-        self.copies = 0
 
 
 @dataclass
@@ -106,6 +104,17 @@ def switched(context: bpy.types.Context) -> None:
     restart()
     if is_on(context):
         _start_timer()
+
+
+def is_working() -> bool:
+    """Whether the guard tests or corrects, or is about to."""
+    return bool(bpy.app.timers.is_registered(observe_and_act))
+
+
+def step_replaced(before: UndoStep | None) -> None:
+    """Called when the active undo step was replaced by the same: the guard knows it again."""
+    if before is not None and _watch.guard.step == before:
+        _watch.guard = replace(_watch.guard, step=undo_steps.active_step())
 
 
 def exclusions_changed(context: bpy.types.Context) -> None:
@@ -223,9 +232,6 @@ def _finish(
     watch = _watch
     if outcome.wrote:
         _store_in_history(window, action, seen)
-    elif context.mode.startswith("EDIT") and watch.copies != stiv_blender.copies_made():
-        undo_steps.complete_last(window)  # for the undo of the next tool
-    watch.copies = stiv_blender.copies_made()
     first = watch.record.accepted is None
     left = watch.record.accept(context, outcome, restored) or bool(outcome.reason)
     if left and not first and is_new_result(watch.guard, seen, action):

@@ -62,7 +62,7 @@ class TaskOperator(Mixin):
             self._leave(context)
             self._restore(error)
             return report_error(self, error)
-        if not done:
+        if not done or not self.can_finish(context):
             window_io.show_progress(context, fraction, translate(self.bl_label))
             return {"RUNNING_MODAL"}
         self._leave(context)
@@ -77,6 +77,10 @@ class TaskOperator(Mixin):
         self._abandon(context)
         self.report({"INFO"}, translate("cancelled, nothing changed"))
         return {"CANCELLED"}
+
+    def can_finish(self, context: bpy.types.Context) -> bool:
+        """Whether `finish_task` can be called; asked at each look once the task is done."""
+        return True
 
     def finish_task(self, context: bpy.types.Context, result: Any) -> set[str]:
         """Report the result of the steps; returns the result of the operator."""

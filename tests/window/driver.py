@@ -57,6 +57,7 @@ class Driver:
         from simulation import Window
         from snapping_and_pivots import SNAPPING_AND_PIVOTS
         from snapping_beside_blender import SNAPPING_BESIDE_BLENDER
+        from undo_in_edit_mode import UNDO_IN_EDIT_MODE
 
         from tools import TOOLS
 
@@ -67,7 +68,7 @@ class Driver:
         drags = DRAGS | FINISHING | DEFORMING_DRAGS | POSING_DRAGS | DISTURBED_DRAGS | RESPONSES | INTERSECTING_STARTS
         grammar = GRAMMAR | SNAPPING_AND_PIVOTS | SNAPPING_BESIDE_BLENDER | PROPORTIONAL_EDITING | REDO_PANEL
         usual = drags | grammar | guard | INTERFACE | LAYOUT | LANGUAGES | SEQUENCES | TOOLS | PICTURES
-        usual |= GETTING_STARTED | MORPHING_DRAGS | MORPHING_IN_STEPS
+        usual |= GETTING_STARTED | MORPHING_DRAGS | MORPHING_IN_STEPS | UNDO_IN_EDIT_MODE
         chosen = {name: (usual | LATENCIES | MEASURES | REAL_EVENTS)[name] for name in names} or usual
         self.results = {"complete": False, "scenarios": {}}
         self.path = output / "results.json"

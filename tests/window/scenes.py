@@ -23,6 +23,8 @@ def clear() -> None:
         bpy.data.objects.remove(obj)
     scene = bpy.context.scene
     scene.stiv.live_transforms = scene.stiv.live_guard = False
+    scene.stiv.passing_pairs.clear()
+    scene.stiv.excluded = ""
     response = "responders", "object_response", "slide_out_of_axis", "smoothness", "tight", "constraints"
     for name in ("separation", "interference", *response):
         scene.stiv.property_unset(name)

@@ -8,20 +8,20 @@ from bpy.props import BoolProperty
 
 from ... import stiv_blender
 from ...intersection_texts import details, headline
-from ...native_module import NeedsNativeModule
 from ...overlay import display
 from ...scene.edit_settings import edit_settings
 from ...translations import counted, translate
+from ..finding_operator import FindingOperator
 from ..repair.passing import passing_text
-from ..reports import clearance_text, report_error
+from ..reports import clearance_text
 
 
-class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
+class STIV_OT_check(FindingOperator, bpy.types.Operator):
     """Find intersections of all visible surfaces with an exact test"""
 
     bl_idname = "stiv.check"
     bl_label = "Collision Check"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
+    sets = False
 
     select: BoolProperty(
         name="Select Intersecting Faces",
@@ -29,12 +29,12 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         default=False,
     )
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Check, show, and select if asked to."""
-        try:
-            found = stiv_blender.check_scene(context, edit_settings(context.scene))
-        except ValueError as error:
-            return report_error(self, error)
+    def find(self, context: bpy.types.Context) -> stiv_blender.SceneCheck:
+        """Check."""
+        return stiv_blender.check_scene(context, edit_settings(context.scene))
+
+    def take(self, context: bpy.types.Context, found: stiv_blender.SceneCheck) -> None:
+        """Show, and select if asked to."""
         if self.select and found.pairs:
             select(context, found.pairs)
         lines = [headline(found.pairs, translate), *details(found.pairs, translate)]
@@ -45,7 +45,6 @@ class STIV_OT_check(NeedsNativeModule, bpy.types.Operator):
         result.summary, result.intersects = "\n".join(filter(None, lines)), bool(found.pairs)
         display.show_pairs(context, found.pairs)
         self.report({"WARNING"} if found.pairs else {"INFO"}, text.splitlines()[0])
-        return {"FINISHED"}
 
 
 def tested(found: stiv_blender.SceneCheck) -> list[str]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 
 import bpy
 
@@ -12,40 +13,37 @@ from ...intersection_texts import counted_faces, short_name
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings
 from ...translations import translate, translate_error
-from ..reports import report_error
+from ..finding_operator import FindingOperator
+
+_Found = tuple["stiv_blender.Exclusions", Sequence["stiv_blender.FacePair"]]
 
 
-class ExclusionOperator(NeedsNativeModule):
-    """Base of operators that change the exclusions of the scene."""
-
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
-
-
-class STIV_OT_exclude_intersections(ExclusionOperator, bpy.types.Operator):
+class STIV_OT_exclude_intersections(FindingOperator, bpy.types.Operator):
     """Allow current intersections to stay or shrink; all other pairs stay guarded"""
 
     bl_idname = "stiv.exclude_intersections"
     bl_label = "Exclude Collisions"
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Find all intersecting pairs and store them in the scene, replacing earlier ones."""
-        try:
-            excluded, others = stiv_blender.find_exclusions(context, _settings(context))
-        except ValueError as error:
-            return report_error(self, error)
+    def find(self, context: bpy.types.Context) -> _Found:
+        """All intersecting pairs."""
+        return stiv_blender.find_exclusions(context, _settings(context))
+
+    def take(self, context: bpy.types.Context, found: _Found) -> None:
+        """Store the pairs in the scene, replacing earlier ones."""
+        excluded, others = found
         context.scene.stiv.excluded = excluded.to_json()
         self.report({"INFO"}, _excluded(excluded))
         if others:
             text = translate("{}: its edges or hair still cut; set its role to No Collision")
             self.report({"WARNING"}, text.format(short_name(others[0].first.object)))
-        return {"FINISHED"}
 
 
-class STIV_OT_clear_exclusions(ExclusionOperator, bpy.types.Operator):
+class STIV_OT_clear_exclusions(NeedsNativeModule, bpy.types.Operator):
     """Guard all pairs of faces again"""
 
     bl_idname = "stiv.clear_exclusions"
     bl_label = "Clear Excluded Collisions"
+    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Delete the exclusions."""

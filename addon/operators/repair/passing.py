@@ -11,36 +11,35 @@ from ...guard import watcher
 from ...native_module import NeedsNativeModule
 from ...scene.edit_settings import edit_settings, passing_pairs
 from ...translations import translate
-from ..reports import report_error
+from ..finding_operator import FindingOperator
 
 LISTED = 2  # pairs in a line
 
 
-class STIV_OT_let_pass(NeedsNativeModule, bpy.types.Operator):
+class STIV_OT_let_pass(FindingOperator, bpy.types.Operator):
     """Let the selected objects pass through the objects that they intersect now"""
 
     bl_idname = "stiv.let_pass"
     bl_label = "Let Collisions Pass"
-    bl_options = {"REGISTER", "UNDO"}  # noqa: RUF012 (Blender reads a set)
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Add a row for each intersecting pair of a selected object and another one; if there is none, with itself."""
-        try:
-            found = stiv_blender.check_scene(context, edit_settings(context.scene)).pairs
-        except ValueError as error:
-            return report_error(self, error)
+    def find(self, context: bpy.types.Context) -> list[tuple[str, ...]] | None:
+        """Each intersecting pair of a selected object and another one; if there is none, with itself."""
+        found = stiv_blender.check_scene(context, edit_settings(context.scene)).pairs
         selected = {obj.name for obj in context.selected_objects}
         chosen = sorted(names for names in found.by_objects() if selected.intersection(names))
         pairs = [pair for pair in chosen if pair[0] != pair[1]] or chosen
         if not pairs:
             self.report({"INFO"}, translate("The selection intersects no other object"))
-            return {"CANCELLED"}
+            return None
+        return pairs
+
+    def take(self, context: bpy.types.Context, pairs: list[tuple[str, ...]]) -> None:
+        """Add a row for each pair."""
         for first, second in pairs:
             row = context.scene.stiv.passing_pairs.add()
             row.first, row.second = context.scene.objects[first], context.scene.objects[second]
         self.report({"INFO"}, passing_text(context.scene))
         watcher.exclusions_changed(context)
-        return {"FINISHED"}
 
 
 class STIV_OT_let_pass_remove(NeedsNativeModule, bpy.types.Operator):

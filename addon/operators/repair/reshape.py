@@ -16,6 +16,7 @@ from ...scene.edit_settings import edit_settings
 from ...translations import translate
 from ..last_edit import numbers
 from ..reports import message_text, report_error
+from ..start_step import StartStep
 from ..task_operator import TaskOperator, TimeLimitProperty
 
 REPORTED_PAIRS = 100  # pairs in the report for scripts
@@ -53,9 +54,15 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
         """Names of the properties that apply to the present values."""
         return tuple(type(self).__annotations__)
 
+    def note_start(self, context: bpy.types.Context) -> None:
+        """Remember what undo has to restore, before the scene is read."""
+        self._start = StartStep()
+        self._shapes = stiv_blender.EditModeShapes(list(context.view_layer.objects))
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Solve at once, with Blender's progress at the pointer."""
         manager = context.window_manager
+        self.note_start(context)
         manager.progress_begin(0, 100)
         try:
             report = stiv_blender.run_to_end(
@@ -65,6 +72,8 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
             return report_error(self, error)
         finally:
             manager.progress_end()
+        if report.changed:
+            self._start.add(context, self._shapes.shown)
         return self._finish(context, report)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -75,6 +84,7 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
 
     def start(self, context: bpy.types.Context) -> set[str]:
         """Read the scene and start the job."""
+        self.note_start(context)
         try:
             self._reshaping = self.begin(context)
         except Exception as error:
@@ -89,12 +99,17 @@ class ReshapeOperator(TaskOperator, NeedsNativeModule):
             if report is not None:
                 return report
 
+    def can_finish(self, context: bpy.types.Context) -> bool:
+        """Whether undo can return to the start."""
+        return not self._task.result.changed or self._start.wait(context, self._shapes.shown)
+
     def finish_task(self, context: bpy.types.Context, result: Any) -> set[str]:
         """Report."""
         return self._finish(context, result)
 
     def restore_scene(self) -> None:
         """Restore the start exactly."""
+        self._start.cancel()
         self._reshaping.restore()
 
     def _finish(self, context: bpy.types.Context, report: Any) -> set[str]:

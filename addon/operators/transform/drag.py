@@ -12,7 +12,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
 from ... import stiv_blender
-from ...guard import undo_steps
+from ...guard import completion, undo_steps
 from ...modal.axis_lock import AxisLock
 from ...modal.drag_calls import DragCalls
 from ...modal.drag_end import DragEnded, Progress
@@ -248,6 +248,7 @@ class DragOperator(Mixin):
             if context.mode.startswith("EDIT"):  # undo returns to the step of the start
                 with edit.start_shown():
                     undo_steps.complete_active(context.window)
+                completion.completed()
             insert_keyframes(context, edit)
             outcome = self._outcome(edit, result)
             dragged = drag_results.DragResult(edit.start_digest, edit.controls, result, report, outcome=outcome)

@@ -32,6 +32,7 @@ from ..reports import (
     say,
     write_failure,
 )
+from ..start_step import StartStep
 from ..task_operator import TaskOperator
 from . import drag_results, redo_limit
 from .constraint import Constraint, free_directions
@@ -82,6 +83,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         if bpy.app.background or context.window is None:
             return self.execute(context)
         if context.region_data is None:
+            self._start = StartStep()
             return self.start_task(context, self._steps(context))
         try:
             bpy.ops.stiv.drag("INVOKE_DEFAULT", kind=self.kind)
@@ -95,7 +97,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
         if dragged is not None and dragged.shown:
             dragged.shown, dragged.values = False, self._values()
             return {"FINISHED"}
-        edit = None
+        edit, self._start = None, StartStep()
         try:
             transform, frame = self.requested(), read_frame(context)
             edit = self._run(context, begin_edit(context, self.request(context.scene)))
@@ -159,6 +161,7 @@ class TransformOperator(TaskOperator, NeedsNativeModule, TransformOptions):
     ) -> stiv_blender.Steps[EndedEdit]:
         """Steps that write the accepted state, and end the edit."""
         report = yield from edit.write_steps()
+        self._start.add(context, edit.start_shown)
         insert_keyframes(context, edit)
         ended = EndedEdit.of(context, edit, report.result or result, report)
         edit.finish()

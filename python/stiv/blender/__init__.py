@@ -37,12 +37,12 @@ from stiv.blender.morphing.key_sliders import movable_keys
 from stiv.blender.morphing.morph import MorphReport, MorphTask, morph
 from stiv.blender.morphing.morph_edit import MorphEdit
 from stiv.blender.repair.contraction import BlenderContraction, ContractionSettings, contract_scene
+from stiv.blender.repair.edit_mode_shapes import EditModeShapes
 from stiv.blender.repair.expansion import BlenderExpansion, ExpansionSettings, expand_scene
 from stiv.blender.repair.repair import BlenderRepair, RepairSettings, repair_scene, run_to_end
 from stiv.blender.repair.reshaping import ReshapeReport
 from stiv.blender.repair.separation import SeparationReport, separate, separate_steps
 from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces
-from stiv.blender.scene.evaluation_copies import copies_made
 from stiv.blender.scene.exclusions import intersection_text, without_excluded
 from stiv.blender.scene.guarded_evaluations import Guard, choose_guard
 from stiv.blender.scene.lattice_reading import read_selected_lattice_points
@@ -52,6 +52,7 @@ from stiv.blender.scene.pose_bones import moved_bones, select_bones
 from stiv.blender.scene.references import SceneChangedError
 from stiv.blender.scene.snap_targets import SnapMesh, SnapTarget, read_snap_targets
 from stiv.blender.scene.stack_twin import kept_twins
+from stiv.blender.scene.temporary_data import copies_made, on_copies
 from stiv.blender.scripts.enabling import enable
 from stiv.blender.settings import EditSettings, Handles, LoopSurface, WeightGroup
 from stiv.blender.verify.face_selection import faces_of, select_faces
@@ -75,6 +76,7 @@ __all__ = [
     "ContractionSettings",
     "Drop",
     "DropSettings",
+    "EditModeShapes",
     "EditSettings",
     "Element",
     "Exclusions",
@@ -151,6 +153,7 @@ __all__ = [
     "moves_surface",
     "nearest_pair",
     "object_pair",
+    "on_copies",
     "place",
     "poses_surface",
     "push_apart",

@@ -53,5 +53,31 @@ def test_a_step_before_others_is_completed_only_for_a_new_one(
     text += f"{later}   2 {{0x3}} type='Edit Mesh', name='[Move]'\n" if later else ""
     monkeypatch.setattr(undo_steps, "_stack", lambda: text)
     monkeypatch.setattr(undo_steps, "replace_active", lambda window, name: replaced.append(name))
-    undo_steps.complete_last(bpy.context.window)
+    assert undo_steps.complete_last(bpy.context.window) == is_replaced
     assert replaced == (["A"] if is_replaced else [])
+
+
+FILE, SKIPPED_FILE = (f"[{flags}]   0 {{0x1}} type='Global Undo', name='Any'\n" for flags in (" #M ", " #MS"))
+EDITED = "[*   ]   1 {0x2} type='Edit Mesh', name='A'\n"
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize(
+    ("lines", "is_complete"),
+    [
+        (FILE + EDITED, False),
+        (SKIPPED_FILE + EDITED, True),
+        (SKIPPED_FILE + EDITED.replace("*", " ") + EDITED, False),
+    ],
+)
+def test_a_complete_step_is_neither_replaced_nor_added_again(
+    monkeypatch: pytest.MonkeyPatch, lines: str, is_complete: bool, end: str
+) -> None:
+    """The whole file is stored immediately before it."""
+    stored: list[str] = []
+    monkeypatch.setattr(undo_steps, "_stack", lambda: lines.replace("\n", end))
+    monkeypatch.setattr(undo_steps, "replace_active", lambda window, name: stored.append(name))
+    monkeypatch.setattr(undo_steps, "push", lambda window, name: stored.append(name))
+    assert undo_steps.complete_last(bpy.context.window)
+    undo_steps.add_start()
+    assert stored == ([] if is_complete else ["A", "A"])

@@ -4,6 +4,7 @@
 import json
 import sys
 from collections.abc import Iterator
+from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any
 
@@ -103,6 +104,9 @@ class RecordingEdit:
     def restore(self) -> None:
         bpy.data.objects[self.name].matrix_world = self.before
 
+    def start_shown(self) -> Any:
+        return nullcontext()
+
 
 @pytest.fixture(autouse=True)
 def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
@@ -118,6 +122,7 @@ def scene(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     stand_in.fit_message = fit_message
     stand_in.is_cut_by_topology = lambda result: False
     stand_in.free_kept_data = lambda: None
+    stand_in.copies_made, stand_in.on_copies = lambda: 0, lambda listener: None
     monkeypatch.setitem(sys.modules, "stiv.blender", stand_in)
     monkeypatch.setattr(RecordingEdit, "failing", None)
     monkeypatch.setattr(native_module, "problem", lambda: "")

@@ -20,6 +20,7 @@ from stiv.blender.scene.dependencies import node_inputs
 from stiv.blender.scene.evaluations import RENDER, SHOWN, is_active, is_edited
 from stiv.blender.scene.followers import data_of, driving, find_driver_targets
 from stiv.blender.scene.references import ObjectReference
+from stiv.blender.scene.temporary_data import note_copies
 from stiv.blender.scene.unkeyed_values import UnkeyedValues, animated_below, forget_keyframes
 
 NAME = "STIV Evaluation"
@@ -28,21 +29,12 @@ SCENE_SETTINGS = ("frame_current", "frame_subframe", "gravity", "use_gravity")
 TIME_SETTINGS = ("frame_map_old", "frame_map_new", "use_simplify", "simplify_subdivision")
 
 
-_count = 0
-
-
-def copies_made() -> int:
-    """How often objects were copied for an evaluation. Blender's next undo step then stores the whole file."""
-    return _count
-
-
 class EvaluationCopies:
     """Copies of objects. Only some of them are shown; the others are referred to by these."""
 
     def __init__(self, home: bpy.types.Scene, evaluation: str, own_data: Collection[bpy.types.Object] = ()) -> None:
         """Make the scene; `fill` copies the objects. `own_data`: objects whose data is copied too."""
-        global _count
-        _count += 1
+        note_copies()
         self._evaluation = evaluation
         self._own_data = frozenset(ob.session_uid for ob in own_data)
         self._made: list[bpy.types.ID] = []

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 
 from stiv.blender.scene.arrays import Singles, read_collection
+from stiv.blender.scene.temporary_data import note_copies
 
 
 def is_undeformed(lattice: bpy.types.Lattice) -> bool:
@@ -30,6 +31,7 @@ def read_rest_lattice_points(lattice: bpy.types.Lattice) -> Singles:
     """
     if not lattice.is_editmode:
         return read_collection(lattice.points, "co", 3, np.float32)
+    note_copies()
     copy = lattice.copy()
     try:
         return read_collection(copy.points, "co", 3, np.float32)

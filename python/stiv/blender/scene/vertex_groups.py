@@ -9,6 +9,7 @@ import numpy as np
 
 from stiv import InputError
 from stiv.blender.scene.arrays import Floats, Singles
+from stiv.blender.scene.temporary_data import note_copies
 
 
 def group_weights(ob: bpy.types.Object, name: str, purpose: str) -> Floats:
@@ -29,6 +30,7 @@ def _of_lattice(lattice: bpy.types.Lattice, group: int) -> Floats:
     """In Edit Mode Blender returns wrong groups of points, so a copy outside Edit Mode is read."""
     if not lattice.is_editmode:
         return read_group_weights(lattice.points, group).astype(np.float64)
+    note_copies()
     copy = lattice.copy()
     try:
         return read_group_weights(copy.points, group).astype(np.float64)
