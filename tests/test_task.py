@@ -68,9 +68,16 @@ def test_a_task_without_time_never_waits_and_ends_nevertheless(edit: families.Ed
     assert len(task.result) == 2
 
 
-def test_cancelling_reaches_the_present_and_all_later_jobs(edit: families.Edit) -> None:
-    session = session_of(edit)
+@pytest.mark.parametrize("starts_before", [True, False])
+def test_cancelling_reaches_the_present_and_all_later_jobs(edit: families.Edit, starts_before: bool) -> None:
+    """Each job waits for a call in this thread, so that none ends before it is cancelled."""
+    rows = np.arange(edit.deformation.control_count)
+    unit = np.tile(np.eye(3), (len(rows), 1, 1))
+    free = stiv.observed(lambda p: p, (np.arange(len(rows) + 1), rows, unit, (len(rows), len(rows))))
+    session = stiv.EditSession(edit.surface, free, edit.controls)
     task = Task(halfway_and_back(session, edit))
+    if starts_before:
+        task.start()
     task.cancel()
     while not task.advance(1.0):
         pass

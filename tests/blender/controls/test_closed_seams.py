@@ -19,6 +19,7 @@ from stiv.blender import (
     BlenderEdit,
     EditSettings,
     Motion,
+    Task,
     check_scene,
     find_intersections,
     guard_result,
@@ -27,6 +28,7 @@ from stiv.blender import (
 from stiv.blender.controls.closed_seams import MergedRows
 from stiv.blender.edit.snapshot import find_moving_vertices
 from stiv.seams import Seams
+from tests.stepping import take_steps
 
 SETTINGS = EditSettings(separation=0.01)
 SHOULDER = (0.5, 0, 1.35)
@@ -237,6 +239,27 @@ def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
         edit.restore()
         bpy.context.view_layer.update()
         assert bone.rotation_euler.x == 0 and np.array_equal(evaluated(sheet), start)
+
+
+def test_a_drag_that_is_cancelled_where_a_seam_opens_keeps_the_shown_state() -> None:
+    """At each of its steps, also while a session with open seams is made."""
+    for before in range(100):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        _, bone = sheet_that_opens(PARTING)
+        edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
+        drag_turn(edit, 0.1)
+        assert edit.write().passed
+        task = Task(edit.drag_steps(Motion(turn(1.2, "X", (0, 0, 0)), np.zeros(3))))
+        is_done = take_steps(task, before)
+        task.cancel()
+        while not task.advance(1.0):
+            pass
+        begins_again = len(edit.surface) == 8  # from the start
+        assert bone.rotation_euler.x == pytest.approx(0.0 if begins_again else 0.1, abs=1e-4)
+        assert edit.write().passed and drag_turn(edit, 0.2).status in ("reached", "unchanged")
+        if is_done:
+            break
+    assert before > 3
 
 
 def test_collisions_stay_on_where_an_edit_that_began_without_them_opens_a_seam() -> None:

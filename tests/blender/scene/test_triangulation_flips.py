@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A quad that bends until Blender flips its diagonal, with a post in the place of the flip."""
 
-from functools import partial
 from itertools import count
 from types import SimpleNamespace
 from typing import Any
@@ -24,6 +23,7 @@ from stiv.blender.scene.triangulation_flips import (
     guard_bent_quads,
     with_current_triangulation,
 )
+from tests.stepping import run_cancelled
 
 WINGS = (1, 3)
 
@@ -169,24 +169,6 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
     assert found[True][1] <= found[False][1]
 
 
-def write_cancelled(edit: BlenderEdit, before: int) -> tuple[state_writer.WriteReport, int]:
-    """The report of a write that is cancelled after some steps, and the number of all."""
-    steps, token, number = edit.write_steps(), stiv.CancelToken(), 0
-    resume = partial(next, steps)
-    while True:
-        if number == before:
-            token.cancel()
-        try:
-            step = resume()
-        except StopIteration as end:
-            return end.value, number
-        number += 1
-        try:
-            resume = partial(steps.send, token.cancelled if step is None else step.run(cancel=token))
-        except stiv.CancelledError as error:
-            resume = partial(steps.throw, error)
-
-
 def test_a_write_that_is_cancelled_ends_at_a_state_that_passes() -> None:
     """At any time: while a session with the flipped triangles is made, while it solves, or in the search."""
     for before in range(100):
@@ -195,7 +177,7 @@ def test_a_write_that_is_cancelled_ends_at_a_state_that_passes() -> None:
         add_post()
         edit = begin_with_wings(quad)
         edit.drag(shift(z=2))
-        report, steps = write_cancelled(edit, before)
+        report, steps = run_cancelled(edit.write_steps(), before)
         assert check_scene(bpy.context).pairs == () and edit.is_shown()
         if report.result is not None:
             assert (report.result.status == "cancelled") == (before < steps)

@@ -361,11 +361,16 @@ class BlenderEdit:
     def _reopen(self, result: stiv.EditResult) -> Steps[bool]:
         """Steps that begin again if an open seam stopped the edit. They return whether they did.
 
-        An edit that began with collisions off does not: its start may intersect.
+        An edit that began with collisions off does not: its start may intersect. If they are cancelled, the edit stays
+        where the seam stopped it.
         """
         if not self._began_free:
             return False
-        begun = yield from self._late_seams.begin_again_steps(self.control_sets, result)
+        try:
+            begun = yield from self._late_seams.begin_again_steps(self.control_sets, result)
+        except stiv.CancelledError:  # Blender shows the start
+            self._writer.write(self._solver.trail.written)
+            return False
         if begun is not None:
             goal = self._goal
             self._begin_from(*begun)
