@@ -16,6 +16,7 @@ import stiv
 from stiv.blender import EditSettings, Handles, MorphTask, Task, check_scene, morph
 from stiv.blender.morphing.morphed_scene import MorphedScene
 from stiv.blender.scene.references import SceneChangedError
+from tests.stepping import take_steps
 
 GOALS = {"Ball": {"Wide": 1.0, "Tall": 0.5}}
 
@@ -47,7 +48,7 @@ def test_steps_end_as_one_call_does_and_show_nothing_in_between() -> None:
     start = values(ball)
     morphing = MorphTask(bpy.context, GOALS, SETTINGS)
     task, shown = Task(morphing.solve_steps()), []
-    while not task.advance(0.002):
+    while not take_steps(task, 1):
         morphing.write_tested()
         shown.append(values(ball))
     assert len(shown) > 20 and all(each == start for each in shown)
@@ -65,7 +66,7 @@ def test_clothes_in_steps_end_as_in_one_call(kind: str) -> None:
     before = evaluated(shirt)
     morphing = MorphTask(bpy.context, {"Ball": {"Wide": 1.0}}, settings)
     task = Task(morphing.solve_steps())
-    while not task.advance():
+    while not take_steps(task, 1):
         morphing.write_tested()
         assert np.array_equal(evaluated(shirt), before)
     in_steps = evaluated(shirt)
@@ -93,14 +94,13 @@ def test_blender_is_written_in_the_thread_that_advances(monkeypatch: pytest.Monk
 
 @pytest.mark.parametrize("ends", ["abandon", "cancel", "restore"])
 def test_a_morph_that_ends_early_leaves_the_start(ends: str) -> None:
-    """After any number of looks at the task: while the scene is read, while a job solves, and between jobs."""
+    """After any number of steps: while the scene is read, while a job solves, and between jobs."""
     ball = two_keys()
     start, shape = values(ball), evaluated(ball)
-    for looks in (0, 1, 2, 3, 5, 8, 13, 21, 34):
+    for steps in (0, 1, 2, 3, 5, 8, 13, 21, 34):
         morphing = MorphTask(bpy.context, GOALS, SETTINGS)
         task = Task(morphing.solve_steps())
-        for _ in range(looks):
-            assert not task.advance(), "the morph takes more looks"
+        assert not take_steps(task, steps), "the morph takes more steps"
         if ends == "cancel":
             task.cancel()
             with pytest.raises(stiv.CancelledError):
@@ -110,17 +110,16 @@ def test_a_morph_that_ends_early_leaves_the_start(ends: str) -> None:
             task.abandon()
         if ends == "restore":
             morphing.restore()
-        assert values(ball) == start and np.array_equal(evaluated(ball), shape), looks
+        assert values(ball) == start and np.array_equal(evaluated(ball), shape), steps
 
 
 def test_an_object_that_is_gone_ends_the_morph_with_an_error() -> None:
     """Whenever a script deletes it."""
-    for looks in (1, 3, 10, 30):
+    for steps in (1, 3, 10, 30):
         ball = two_keys()
         morphing = MorphTask(bpy.context, GOALS, SETTINGS)
         task = Task(morphing.solve_steps())
-        for _ in range(looks):
-            task.advance(0.001)
+        assert not take_steps(task, steps)
         bpy.data.objects.remove(ball)
         with pytest.raises((stiv.InputError, SceneChangedError)):
             while not task.advance(0.01):
