@@ -9,7 +9,6 @@ import bpy
 
 from stiv.blender import check_scene
 from stiv_addon.guard import undo_steps, watcher
-from stiv_addon.guard.decision import QUIET_TIME
 
 FURTHEST = 1.5  # of the box's centre: the wall's face is at 2, the box is 1 wide
 
@@ -30,7 +29,7 @@ def watched_scene() -> Iterator[None]:
 
 def look() -> None:
     """Call the timer's function until it is done."""
-    deadline = time.monotonic() + 3 * QUIET_TIME + 20
+    deadline = time.monotonic() + 600.0  # of a busy machine
     while watcher.observe_and_act() is not None:
         assert time.monotonic() < deadline, "the guard never settles"
         time.sleep(0.02)
