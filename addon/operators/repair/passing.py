@@ -22,7 +22,7 @@ class STIV_OT_let_pass(FindingOperator, bpy.types.Operator):
     bl_idname = "stiv.let_pass"
     bl_label = "Let Collisions Pass"
 
-    def find(self, context: bpy.types.Context) -> list[tuple[str, ...]] | None:
+    def find(self, context: bpy.types.Context) -> list[tuple[str, str]] | None:
         """Each intersecting pair of a selected object and another one; if there is none, with itself."""
         found = stiv_blender.check_scene(context, edit_settings(context.scene)).pairs
         selected = {obj.name for obj in context.selected_objects}
@@ -33,7 +33,7 @@ class STIV_OT_let_pass(FindingOperator, bpy.types.Operator):
             return None
         return pairs
 
-    def take(self, context: bpy.types.Context, pairs: list[tuple[str, ...]]) -> None:
+    def take(self, context: bpy.types.Context, pairs: list[tuple[str, str]]) -> None:
         """Add a row for each pair."""
         for first, second in pairs:
             row = context.scene.stiv.passing_pairs.add()
