@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Meshes read once as obstacles, and cropped, against a plain loop over all faces, edges and vertices."""
 
+from collections.abc import Callable, Iterator, Sequence
+from types import SimpleNamespace
 from typing import Any
 
 import bmesh
 import bpy
 import numpy as np
 import pytest
-from building import add, mesh
+from building import add, add_cube, mesh
 from numpy.testing import assert_array_equal
 
 from stiv.blender import check_scene
@@ -15,9 +17,9 @@ from stiv.blender.scene import static_reading
 from stiv.blender.scene.elements import Element
 from stiv.blender.scene.evaluated_scene import VisibleMesh, read_scene
 from stiv.blender.scene.evaluations import SHOWN
-from stiv.blender.scene.mesh_reading import evaluated_mesh, read_positions, view_positions
+from stiv.blender.scene.mesh_reading import evaluated_mesh, read_positions, view_first_corners, view_positions
 from stiv.blender.scene.static_mesh import StaticMesh
-from stiv.blender.scene.static_reading import read_static_meshes
+from stiv.blender.scene.static_reading import prepare_static_meshes_steps, read_static_meshes
 
 BOXES = [((-1, -1, -1), (1, 1, 1)), ((0.2, -9, -9), (0.9, 9, 9)), ((40, 40, 40), (41, 41, 41)), ((-99,) * 3, (99,) * 3)]
 
@@ -69,7 +71,7 @@ def test_all_elements_that_touch_the_box_are_read(seed: int, box: Any) -> None:
     all_kinds(seed)
     low, high = map(np.array, box)
     part, whole = read_near(box), read()
-    assert part.cropped is not None and part.static and part.size == whole.size
+    assert part.cropped is not None and part.is_static and part.size == whole.size
     world, numbers = whole.world(), part.cropped.vertices
     assert_array_equal(part.world(), world[numbers])
 
@@ -174,6 +176,14 @@ def test_views_show_the_values_that_are_read() -> None:
         assert_array_equal(view, read_positions(data))
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_viewed_first_corners_are_those_that_are_read(seed: int) -> None:
+    ob = all_kinds(seed)
+    for data in (ob.data, ob.evaluated_get(bpy.context.evaluated_depsgraph_get()).data, bpy.data.meshes.new("Empty")):
+        expected = [face.loop_start for face in data.polygons]
+        assert_array_equal(view_first_corners(data), np.array(expected, np.int32))
+
+
 def test_elements_are_named_by_their_numbers_in_blenders_mesh() -> None:
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=50, y_subdivisions=50, size=50)
     ground = bpy.context.object
@@ -182,3 +192,84 @@ def test_elements_are_named_by_their_numbers_in_blenders_mesh() -> None:
     assert number == part.cropped.vertices[0] > 0 and ground.data.vertices[number].co.x > 18
     assert whole.vertex_number(3) == 3
     assert check_scene(bpy.context).pairs == ()
+
+
+def add_instances() -> None:
+    """Five cubes, three of which share a mesh; two instances of a collection with two cubes."""
+    first = add_cube("Cube 0", (0, 0, 0))
+    for number in range(1, 5):
+        add(f"Cube {number}", first.data if number < 3 else add_cube("Other").data, (3.0 * number, 0, 0))
+    collection = bpy.data.collections.new("Cubes")
+    for number in range(2):
+        collection.objects.link(bpy.data.objects[f"Cube {number}"])
+    for number in range(2):
+        add(f"Instances {number}", None, (0, 5 + number, 0), instance_type="COLLECTION", instance_collection=collection)
+
+
+def read_in_steps(between: Callable[[int], object] = lambda step: None) -> tuple[int, tuple[StaticMesh, ...]]:
+    """The number of steps, each of which reads one mesh, and all meshes."""
+    names, count = {ob.name for ob in bpy.data.objects}, 0
+    for _ in prepare_static_meshes_steps(bpy.context, names):
+        between(count)
+        bpy.context.view_layer.update()
+        count += 1
+    return count, read_static_meshes(bpy.context, names, frozenset({SHOWN}))
+
+
+def assert_same(ours: Sequence[StaticMesh], theirs: Sequence[StaticMesh]) -> None:
+    assert [(each.owner, each.source, each.number) for each in ours] == [
+        (each.owner, each.source, each.number) for each in theirs
+    ]
+    for a, b in zip(ours, theirs, strict=True):
+        assert_array_equal(a.obstacle.vertices, b.obstacle.vertices)
+        assert_array_equal(a.obstacle.triangles, b.obstacle.triangles)
+
+
+def test_meshes_read_in_steps_are_those_read_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(static_reading, "TURN", 0.0)
+    add_instances()
+    steps, found = read_in_steps()
+    assert steps == len(found) == 11
+    assert len({id(each.shape) for each in found}) == 3  # instances share theirs in all steps
+    assert [a is b for a, b in zip(read_in_steps()[1], found, strict=True)] == [True] * len(found)
+    static_reading.forget_static_meshes()
+    names = {ob.name for ob in bpy.data.objects}
+    assert_same(found, read_static_meshes(bpy.context, names, frozenset({SHOWN})))
+
+
+def test_a_step_reads_several_meshes_however_many_are_read_already(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A clock that counts the meshes that are visited. A step reads until five seconds after its first mesh."""
+    clock, visit = [0.0], static_reading._visible
+
+    def visit_slowly(*given: Any) -> Iterator[Any]:
+        for each in visit(*given):
+            clock[0] += 1
+            yield each
+
+    monkeypatch.setattr(static_reading, "TURN", 5.0)
+    monkeypatch.setattr(static_reading, "_visible", visit_slowly)
+    monkeypatch.setattr(static_reading, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    for number in range(30):
+        add_cube(f"Cube {number}", (3.0 * number, 0, 0))
+    steps, found = read_in_steps()
+    assert len(found) == 30 and steps == 4
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_change_between_steps_is_read(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(static_reading, "TURN", 0.0)
+    add_instances()
+    chosen = np.random.default_rng(seed)
+
+    def change(step: int) -> None:
+        ob = bpy.data.objects[f"Cube {chosen.integers(5)}"]
+        if step % 2:
+            ob.location.z += 1
+        else:
+            ob.data.vertices[int(chosen.integers(8))].co.x += 0.5
+            ob.data.update()
+
+    _, found = read_in_steps(change)
+    static_reading.forget_static_meshes()
+    names = {ob.name for ob in bpy.data.objects}
+    assert_same(found, read_static_meshes(bpy.context, names, frozenset({SHOWN})))

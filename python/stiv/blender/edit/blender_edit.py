@@ -71,7 +71,7 @@ class BlenderEdit:
         self._unguarded = None if settings.interference else self._start
         self._solver = solver
         self._goal = MotionGoal(solver, snapshot.control_sets, snapshot.start, settings)
-        self._writer = StateWriter(snapshot.control_sets, solver, settings)
+        self._writer = StateWriter(snapshot.control_sets, solver, settings, snapshot.frame)
         self._notes = EditNotes(solver, snapshot.dropped_exclusions, settings.threads)
         self._moving_vertices = find_moving_vertices(solver.assembly, solver.control_sets)
 
@@ -89,7 +89,8 @@ class BlenderEdit:
         """Steps of `begin`; the first ones read the scene."""
         check_kind(kind)
         participants = find_participants(context, settings)
-        obstacles = find_obstacles(context, {each.reference.name for each in participants}, settings)
+        reshaped = {each.reference.name for each in participants if each.role != "rigid"}
+        obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
         if not obstacles:
             forget_static_meshes()
         return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles)

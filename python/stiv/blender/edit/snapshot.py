@@ -22,7 +22,7 @@ from stiv.blender.scene.dependencies import find_dependents
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.exclusions import drop_stale
 from stiv.blender.scene.guarded_evaluations import Guard, read_guarded_scene
-from stiv.blender.scene.static_reading import read_static_meshes
+from stiv.blender.scene.static_reading import prepare_static_meshes_steps, read_static_meshes
 from stiv.blender.scene.strand_reading import surface_of
 from stiv.blender.settings import EditSettings
 from stiv.task import Steps, Turns
@@ -40,6 +40,7 @@ class EditSnapshot:
         hidden: number of hidden objects, which do not participate.
         dropped_exclusions: message about excluded pairs that are stale; "" if there are none.
         placements: of all objects of the view layer, (4, 4) each.
+        frame: the scene's when it was read.
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
@@ -51,6 +52,7 @@ class EditSnapshot:
     dropped_exclusions: str
     placements: tuple[Floats, ...]
     carried: frozenset[str]
+    frame: float
 
     @cached_property
     def start(self) -> Floats:
@@ -80,6 +82,9 @@ def take_snapshot_steps(
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
     turns = Turns()
     yield from compute_meshes_steps(context)
+    if obstacles:
+        yield from prepare_static_meshes_steps(context, obstacles)
+    frame = context.scene.frame_current_final
     scene, guard = read_guarded_scene(context, settings, strands=True, static=obstacles)
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
@@ -101,7 +106,9 @@ def take_snapshot_steps(
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)
-    return EditSnapshot(assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried)
+    return EditSnapshot(
+        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame
+    )
 
 
 def _is_animated(context: bpy.types.Context, participant: Participant) -> bool:

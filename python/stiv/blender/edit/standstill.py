@@ -34,9 +34,13 @@ def contact_text(
 
 def _in_contact(result: stiv.EditResult, assembly: Assembly, moving: Collection[str]) -> list[str]:
     """Names of the objects in contact, those that do not move if there are any."""
-    surface, vertices = assembly.surface, result.events.vertices.ravel()
-    numbers = np.unique(surface.vertex_body[vertices[vertices < surface.vertex_count]])
-    names = {surface.bodies[number].name for number in numbers.tolist()}
+    surface, vertices = assembly.surface, np.unique(result.events.vertices)
+    count = int(np.searchsorted(vertices, surface.vertex_count))  # vertices of obstacles follow those of the surface
+    bodies = np.unique(surface.vertex_body[vertices[:count]])
+    ends = np.cumsum([each.vertex_count for each in assembly.obstacles])
+    obstacles = np.unique(np.searchsorted(ends, vertices[count:] - surface.vertex_count, side="right"))
+    names = {surface.bodies[number].name for number in bodies.tolist()}
+    names |= {assembly.obstacles[number].owner.name for number in obstacles.tolist()}
     return sorted(names - set(moving)) or sorted(names)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
+from stiv.blender.edit.obstacle_watch import ObstacleWatch
 from stiv.blender.edit.results import merge_results
 from stiv.blender.edit.sessions import stack_controls, write_controls
 from stiv.blender.edit.solver import EditSolver
@@ -98,8 +99,11 @@ def nudged(controls: Floats, last: Floats) -> Iterator[Floats]:
 class StateWriter:
     """Writes solved states. Only states that pass the test in Blender's evaluation remain."""
 
-    def __init__(self, control_sets: Sequence[ControlSet], solver: EditSolver, settings: EditSettings) -> None:
-        """Take the control sets of an edit in their present state, and its solver."""
+    def __init__(
+        self, control_sets: Sequence[ControlSet], solver: EditSolver, settings: EditSettings, frame: float
+    ) -> None:
+        """Take the control sets of an edit in their present state, and its solver. frame: of the start."""
+        self._watch = ObstacleWatch(frame)
         self._start = stack_controls([each.controls for each in control_sets])
         self._solver = solver
         self._settings = settings
@@ -196,6 +200,8 @@ class StateWriter:
 
     def verify(self, accepted: Floats) -> Verification:
         """Test Blender's present evaluation against a surface, (N, 3), that is free of intersections."""
+        if message := self._watch.message(bpy.context, self._solver.assembly.obstacles):
+            return Verification(False, (), message)
         near = self._near_of(accepted)
         if self._verifier is None or not self._verifier.tests(near.assembly, self._solver.excluded):
             self._verifier = self._new_verifier(near)
@@ -228,6 +234,8 @@ class StateWriter:
 
         That path is as long as rounding, and leads nowhere: solves continue from the accepted state.
         """
+        if self._watch.message(bpy.context, self._solver.assembly.obstacles):
+            return False
         near, excluded = self._near_of(accepted), self._solver.excluded
         if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded):
             self._check_beside = None

@@ -26,7 +26,7 @@ def compute_meshes_steps(context: bpy.types.Context) -> Steps[None]:
     turns, known = Turns(), set[Settings]()
     for reference in _visible_meshes(context):
         shown = reference.find().evaluated_get(context.evaluated_depsgraph_get())
-        key = _mesh_key(shown)
+        key = mesh_key(shown)
         if key is None or key not in known:
             len(shown.data.polygons)
         if key is not None:
@@ -43,7 +43,7 @@ class EqualMeshes:
 
     def representative(self, shown: bpy.types.Object) -> bpy.types.Object:
         """An evaluated object whose mesh equals this one's: the first that was asked for."""
-        key = _mesh_key(shown)
+        key = mesh_key(shown)
         if key is None:
             return shown
         if key not in self._known:  # that of an instance ends with the next instance
@@ -59,7 +59,7 @@ def _visible_meshes(context: bpy.types.Context) -> list[ObjectReference]:
     return list(dict.fromkeys(map(ObjectReference.of, meshes)))
 
 
-def _mesh_key(shown: bpy.types.Object) -> Settings | None:
+def mesh_key(shown: bpy.types.Object) -> Settings | None:
     """Equal for evaluated objects in Object Mode whose evaluated meshes are equal; None if that is not certain."""
     original = shown.original
     mesh = original.data

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads all visible meshes and strands as Blender evaluates them, in world space."""
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -86,7 +87,7 @@ class VisibleMesh:
         read_from: the evaluation from which it was read.
         shown_in: the evaluations that show exactly this mesh.
         also_in: those of them that Blender evaluates apart.
-        static: whether it is a part of an obstacle beside the surface.
+        static: number among the meshes that the owner shows, if it is a part of an obstacle; -1 otherwise.
         strands: strand of each vertex, (n,), of curves and hair; None for meshes.
         rooted_in: names of the objects that carry the strands, and are not tested against them.
         part: number of the part, if a mesh is divided into several that follow each other.
@@ -107,7 +108,12 @@ class VisibleMesh:
     rooted_in: frozenset[str] = frozenset()
     part: int = 0
     also_in: frozenset[str] = frozenset()
-    static: bool = False
+    static: int = -1
+
+    @property
+    def is_static(self) -> bool:
+        """Is it a part of an obstacle beside the surface?"""
+        return self.static >= 0
 
     @property
     def is_instance(self) -> bool:
@@ -216,18 +222,31 @@ def read_scene(
 
 
 def read_positions_of(
-    owners: frozenset[int], opened: OpenEvaluations, read_from: str = SHOWN, static: frozenset[int] = frozenset()
+    owners: frozenset[int], opened: OpenEvaluations, read_from: str = SHOWN
 ) -> list[EvaluatedPositions]:
-    """Read only the positions of the given owners (session numbers), in the order of `read_scene`; much faster.
-
-    Those of `static` owners are views, valid until Blender evaluates again.
-    """
+    """Read only the positions of the given owners (session numbers), in the order of `read_scene`; much faster."""
     placed = []
     for instance, owner, _ in opened.instances(read_from, lambda ob: ob.session_uid in owners):
         with evaluated_mesh(instance.object) as mesh:
             matrix = as_matrix(instance.matrix_world)
-            local = view_positions(mesh) if owner.session_uid in static else read_positions(mesh)
-            placed.append(EvaluatedPositions(ObjectReference.of(owner), local, matrix))
+            placed.append(EvaluatedPositions(ObjectReference.of(owner), read_positions(mesh), matrix))
+    return placed
+
+
+def view_positions_of(wanted: Collection[tuple[int, int]], opened: OpenEvaluations) -> list[EvaluatedPositions]:
+    """View positions as shown now, in the order of `read_scene`, valid until Blender evaluates again.
+
+    wanted: session number of the owner, and number of the mesh among those that it shows.
+    """
+    owners, counts = {owner for owner, _ in wanted}, Counter[int]()
+    placed = []
+    for instance, owner, _ in opened.instances(SHOWN, lambda ob: ob.session_uid in owners):
+        number = owner.session_uid
+        if (number, counts[number]) in wanted:
+            with evaluated_mesh(instance.object) as mesh:
+                matrix = as_matrix(instance.matrix_world)
+                placed.append(EvaluatedPositions(ObjectReference.of(owner), view_positions(mesh), matrix))
+        counts[number] += 1
     return placed
 
 

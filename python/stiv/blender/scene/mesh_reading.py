@@ -61,6 +61,19 @@ def view_corner_edges(mesh: bpy.types.Mesh) -> Indices:
     return _view(attribute.data, "value", 1, np.int32)
 
 
+def view_first_corners(mesh: bpy.types.Mesh) -> Indices:
+    """The first corner of each face, (F,), where Blender stores them, like `view_positions`.
+
+    Blender's own reading asks for each face, and takes 80 ms for a million.
+    """
+    faces = mesh.polygons
+    found = _view(faces, "loop_start", 1, np.int32)
+    last = len(faces) - 1
+    samples = sorted({0, last // 3, last // 2, last}) if len(faces) else []
+    is_stored = all(found[face] == faces[face].loop_start for face in samples)  # in all known versions
+    return found if is_stored else read_collection(faces, "loop_start", 1, np.int32)
+
+
 def _view(items: Any, name: str, width: int, dtype: type) -> NDArray[Any]:
     """The values of an attribute in Blender's memory; a copy if they do not follow each other there."""
     count, size = len(items), width * np.dtype(dtype).itemsize

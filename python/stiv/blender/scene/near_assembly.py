@@ -51,7 +51,7 @@ class NearAssembly:
         """Vertices of `assembly` from those of a session beside all obstacles; -1 for those outside of the box."""
         own = len(self.whole.positions)
         found = np.where(numbers < own, numbers, -1)
-        firsts = own + np.cumsum([0, *(len(each.local) for each in self.whole.obstacles)])
+        firsts = own + np.cumsum([0, *(each.vertex_count for each in self.whole.obstacles)])
         for mesh, obstacle in enumerate(self.obstacles, len(self.whole.meshes)):
             cropped = self.assembly.meshes[mesh].cropped
             assert cropped is not None
@@ -81,20 +81,21 @@ def _make(assembly: Assembly, surface: Floats) -> NearAssembly:
         return NearAssembly(assembly, assembly, (), np.full(3, -np.inf), np.full(3, np.inf))
     low, high = _bounds(assembly, surface, MARGIN)
     found = [each.obstacle.triangles_near(low, high) for each in assembly.obstacles]
-    near = {each.owner for each, rows in zip(assembly.obstacles, found, strict=True) if len(rows)}
-    numbers = tuple(number for number, each in enumerate(assembly.obstacles) if each.owner in near)
+    numbers = tuple(number for number, rows in enumerate(found) if len(rows))
     crops = [assembly.obstacles[number].cropped(found[number]) for number in numbers]
     return NearAssembly(assembly, _extended(assembly, crops), numbers, low, high)
 
 
 def _extended(assembly: Assembly, crops: Sequence[VisibleMesh]) -> Assembly:
-    old, bodies = assembly.surface, [*assembly.surface.bodies]
+    old, bodies, own = assembly.surface, [*assembly.surface.bodies], dict[str, int]()
     triangles, edges, body, starts = [old.triangles], [old.loose_edges], [old.vertex_body], [*assembly.starts.tolist()]
     for mesh in crops:
         triangles.append(mesh.triangles + np.int32(starts[-1]))
         edges.append(mesh.loose_edges + np.int32(starts[-1]))
-        body.append(np.full(len(mesh.local), len(bodies), np.int32))
-        bodies.append(stiv.Body(mesh.owner.name, "fixed"))
+        if mesh.owner.name not in own:  # instances of an owner are one body
+            own[mesh.owner.name] = len(bodies)
+            bodies.append(stiv.Body(mesh.owner.name, "fixed"))
+        body.append(np.full(len(mesh.local), own[mesh.owner.name], np.int32))
         starts.append(starts[-1] + len(mesh.local))
     ignored = [(int(a), int(b)) for a, b in old.ignored]
     surface = stiv.Surface(

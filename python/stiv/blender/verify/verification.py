@@ -12,7 +12,12 @@ from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import Element, FacePair, FacePairs, count_faces, sides_of
-from stiv.blender.scene.evaluated_scene import EvaluatedPositions, evaluation_tolerance, read_positions_of
+from stiv.blender.scene.evaluated_scene import (
+    EvaluatedPositions,
+    evaluation_tolerance,
+    read_positions_of,
+    view_positions_of,
+)
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
 from stiv.blender.scene.exclusions import are_excluded, without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
@@ -199,13 +204,14 @@ def _read_placed(assembly: Assembly, opened: OpenEvaluations) -> Placed:
     """
     placed: list[EvaluatedPositions] = []
     meshes = [mesh for mesh in assembly.meshes if mesh.strands is None]
-    static = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.static)
-    for read_from in dict.fromkeys(mesh.read_from for mesh in meshes if not mesh.static):
-        owners = frozenset(mesh.owner.session_uid for mesh in meshes if mesh.read_from == read_from)
+    whole = [mesh for mesh in meshes if not mesh.is_static]
+    for read_from in dict.fromkeys(mesh.read_from for mesh in whole):
+        owners = frozenset(mesh.owner.session_uid for mesh in whole if mesh.read_from == read_from)
         if read_from in opened.read_from:
-            placed += read_positions_of(owners - static, opened, read_from)
+            placed += read_positions_of(owners, opened, read_from)
+    static = {(mesh.owner.session_uid, mesh.static) for mesh in meshes if mesh.is_static}
     if static:  # parts of obstacles, after all other meshes
-        placed += read_positions_of(static, opened, static=static)
+        placed += view_positions_of(static, opened)
     firsts = np.cumsum([mesh.part == 0 for mesh in meshes]) - 1  # parts of a mesh follow each other
     if max(firsts, default=-1) + 1 == len(placed):
         placed = [placed[first] for first in firsts]
