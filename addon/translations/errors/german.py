@@ -4,6 +4,8 @@
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "1 lose Kante oder Punkt berührt es und bleibt ungeprüft",
     "allow more time, or select fewer objects": "mehr Zeit oder weniger Objekte wählen",
+    "the scene's excluded pairs cannot be read; use Clear Excluded Collisions": "die Ausschlüsse der Szene sind unlesbar; Ausgenommene Kollisionen löschen verwenden",
+    "this frame shows it differently; go back to frame {}": "dieses Bild zeigt es anders; zurück zu Bild {}",
     "the next frame resets it to its keyframes; key it": "das nächste Bild setzt es auf seine Keyframes zurück; Keyframe setzen",
     '"{}" instances it; make the instances real': '"{}" instanziiert es; Instanzen real machen',
     "1 pair of faces cut each other{}": "1 Flächenpaar schneidet sich{}",

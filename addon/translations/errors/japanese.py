@@ -4,6 +4,8 @@
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "孤立した辺または頂点 1 個が接触していて、検査されません",
     "allow more time, or select fewer objects": "時間を延ばすか、選択する対象を減らしてください",
+    "the scene's excluded pairs cannot be read; use Clear Excluded Collisions": "シーンの除外ペアを読めません。「除外コリジョンを解除」を使用してください",
+    "this frame shows it differently; go back to frame {}": "このフレームでは表示が異なります。フレーム {} に戻ってください",
     "the next frame resets it to its keyframes; key it": "次のフレームでキーフレームの値に戻ります。キーを挿入してください",
     '"{}" instances it; make the instances real': '"{}" がインスタンス化しています。実体化してください',
     "1 pair of faces cut each other{}": "1 組の面が交差{}",

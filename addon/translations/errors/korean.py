@@ -4,6 +4,8 @@
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "느슨한 에지 또는 버텍스 1개가 접촉하며 검사하지 않음",
     "allow more time, or select fewer objects": "시간을 늘리거나 선택한 오브젝트를 줄이세요",
+    "the scene's excluded pairs cannot be read; use Clear Excluded Collisions": "씬의 제외 목록을 읽을 수 없습니다. '제외된 충돌 지우기'를 사용하세요",
+    "this frame shows it differently; go back to frame {}": "이 프레임에서는 다르게 표시됩니다. 프레임 {}로 돌아가세요",
     "the next frame resets it to its keyframes; key it": "다음 프레임에서 키프레임 값으로 돌아감; 키프레임을 삽입하세요",
     '"{}" instances it; make the instances real': '"{}"이(가) 인스턴스로 사용함; 인스턴스를 실체화하세요',
     "1 pair of faces cut each other{}": "면 한 쌍이 서로 교차함{}",
