@@ -13,7 +13,7 @@ from stiv import InputError
 from stiv.blender.animation.animated_parts import AnimatedPart, Values
 from stiv.blender.animation.tracks import Track, lasting_seams
 from stiv.blender.controls.closed_seams import MergedRows, limit_to_closed, seams_of_part
-from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note, untested_parts
+from stiv.blender.controls.joint_regions import Joint, Regions, divide_all, joint_note, part_of, untested_parts
 from stiv.blender.controls.rig_twin import skin_weights
 from stiv.blender.scene.arrays import Floats, Indices, as_matrix
 from stiv.blender.scene.assembly import Assembly, assemble
@@ -38,7 +38,7 @@ class Clip:
     Attributes:
         parts: whose correction moves a visible mesh.
         meshes: all visible meshes; those that bones bend are divided at joints.
-        divided: names of the objects that are divided.
+        divided: pairs of names of objects, or one name, of which some parts are not tested.
         regions: the parts of each mesh.
         moving_meshes: the objects whose meshes move, with the vertices of these, see `rows`.
         note: on the faces at joints; "" without any.
@@ -78,8 +78,8 @@ class Clip:
     @property
     def assembly(self) -> Assembly:
         """One surface of all meshes."""
-        stiff = {mesh.owner.name for mesh, kind in zip(self.meshes, self._kinds, strict=True) if kind == "rigid"}
-        rigid = {((name, 0), (name, 0)) for name in stiff}
+        stiff = [mesh for mesh, kind in zip(self.meshes, self._kinds, strict=True) if kind == "rigid"]
+        rigid = {(part_of(mesh, 0), part_of(mesh, 0)) for mesh in stiff}
         mobility = ["fixed" if kind == "still" else "deformable" for kind in self._kinds]
         passing = passing_pairs(self._context.scene)
         return assemble(self.meshes, mobility, (), passing, self._seams, self._untested | rigid)
@@ -232,7 +232,7 @@ class Clip:
         self.regions = tuple(regions)
         self.note = joint_note([track.mesh for track in tracks], regions)
         self._untested = untested_parts([track.mesh for track in tracks], regions)
-        self.divided = frozenset(frozenset((first, second)) for (first, _), (second, _) in self._untested)
+        self.divided = frozenset(frozenset((first, second)) for (first, *_), (second, *_) in self._untested)
         self.meshes = tuple(part for own in parts for part in own)
         self._kinds = [track.kind for track, own in zip(tracks, parts, strict=True) for _ in own]
         self._seams = [seams_of_part(each, part) for each, own in zip(seams, parts, strict=True) for part in own]
@@ -287,7 +287,8 @@ def _vertices(part: VisibleMesh) -> Indices:
 def _parts_of(mesh: VisibleMesh, regions: Regions) -> list[VisibleMesh]:
     """The parts of a mesh as those of another one with the same vertices."""
     return [
-        replace(part, owner=mesh.owner, local=mesh.local[_vertices(part)], matrix=mesh.matrix) for part in regions.parts
+        replace(part, owner=mesh.owner, shown_in=mesh.shown_in, local=mesh.local[_vertices(part)], matrix=mesh.matrix)
+        for part in regions.parts
     ]
 
 

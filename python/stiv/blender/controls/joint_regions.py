@@ -5,13 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiv.blender.scene.arrays import Flags, Floats, Indices
-from stiv.blender.scene.assembly import Assembly, UntestedParts
+from stiv.blender.scene.assembly import Part
 from stiv.blender.scene.evaluated_scene import CroppedMesh, VisibleMesh
 from stiv.blender.scene.torn_seams import cutting_triangles
 from stiv.seams import Seams
@@ -79,9 +80,13 @@ class Skin:
     def share(self, bones: frozenset[str]) -> Floats:
         """Share of some bones in each vertex, (n,)."""
         chosen = [name in bones for name in self.groups]
-        total = self.weights.sum(axis=1)
-        share: Floats = self.weights[:, chosen].sum(axis=1) / np.where(total > 0, total, 1)
+        share: Floats = self.weights[:, chosen].sum(axis=1) / self._total
         return share
+
+    @cached_property
+    def _total(self) -> Floats:
+        total = self.weights.sum(axis=1)
+        return np.where(total > 0, total, 1)
 
 
 @dataclass(frozen=True)
@@ -93,14 +98,14 @@ class Regions:
         untested: pairs of parts that are not tested against each other, a part with itself included.
         joints: number of regions around joints; they are the first parts.
         faces: number of their faces.
-        mates: further such pairs, also with parts of other meshes: part, name of the other object, its part.
+        mates: further such pairs of a part and any other one.
     """
 
     parts: tuple[VisibleMesh, ...]
     untested: frozenset[tuple[int, int]]
     joints: int
     faces: int
-    mates: frozenset[tuple[int, str, int]] = frozenset()
+    mates: frozenset[tuple[int, Part]] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -147,13 +152,17 @@ def divide_all(
     return found
 
 
-def untested_parts(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> frozenset[UntestedParts]:
+def part_of(mesh: VisibleMesh, number: int) -> Part:
+    """A part of a mesh by number."""
+    return mesh.owner.name, mesh.shown_in, number
+
+
+def untested_parts(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> frozenset[tuple[Part, Part]]:
     """All pairs of parts of meshes that are not tested."""
-    found: set[UntestedParts] = set()
+    found: set[tuple[Part, Part]] = set()
     for mesh, each in zip(meshes, regions, strict=True):
-        name = mesh.owner.name
-        found |= {((name, a), (name, b)) for a, b in each.untested}
-        found |= {((name, a), (other, b)) for a, other, b in each.mates}
+        found |= {(part_of(mesh, a), part_of(mesh, b)) for a, b in each.untested}
+        found |= {(part_of(mesh, a), other) for a, other in each.mates}
     return frozenset(found)
 
 
@@ -173,78 +182,6 @@ def joint_note(meshes: Sequence[VisibleMesh], regions: Sequence[Regions]) -> str
         return ""
     name, faces = folding[0][0].owner.name, sum(each.faces for _, each in folding)
     return f"{name}: {faces:,} faces at joints may fold into each other"
-
-
-def fold_note(
-    assembly: Assembly, surfaces: Sequence[int], untested: frozenset[UntestedParts], q: Floats, threads: int = 0
-) -> str:
-    """The message on untested faces that cut into each other at positions `q`, (N, 3), and did not at the start.
-
-    "" if there are none. surfaces: numbers of the meshes that bones bend. untested: pairs of their parts.
-    """
-    for evaluation in dict.fromkeys(assembly.meshes[number].read_from for number in surfaces):
-        numbers = [number for number in surfaces if assembly.meshes[number].read_from == evaluation]
-        found = _folds(assembly, numbers, untested, q, threads)
-        folded = found and found - _folds(assembly, numbers, untested, assembly.positions, threads)
-        if folded:
-            faces = sorted(frozenset().union(*folded))
-            return f"{faces[0][0]}: {len(faces):,} faces at joints cut into each other"
-    return ""
-
-
-_Face = tuple[str, int]  # object and number
-
-
-def _folds(
-    assembly: Assembly, numbers: Sequence[int], untested: frozenset[UntestedParts], q: Floats, threads: int
-) -> set[frozenset[_Face]]:
-    """Pairs of faces that intersect at positions `q`, (N, 3), in parts of meshes that are not tested."""
-    if not untested:
-        return set()
-    whole: dict[str, _Whole] = {}
-    for number in numbers:
-        whole.setdefault(assembly.meshes[number].owner.name, _Whole()).add(assembly, number, q)
-    points, corners, faces, first = [], [], [], 0
-    for name, each in whole.items():
-        points.append(each.points())
-        corners.append(np.concatenate(each.corners) + first)
-        faces += [(name, part, face) for part, own in each.faces for face in own.tolist()]
-        first += len(points[-1])
-    pairs = cutting_triangles(np.concatenate(points), np.concatenate(corners).astype(np.int32), threads)
-    found = set()
-    for i, j in pairs.tolist():
-        (name, p, face), (other, r, last) = faces[i], faces[j]
-        if (name, face) != (other, last) and not untested.isdisjoint(
-            {((name, p), (other, r)), ((other, r), (name, p))}
-        ):
-            found.add(frozenset({(name, face), (other, last)}))
-    return found
-
-
-class _Whole:
-    """A divided mesh as one again: vertices that parts share are one, as in Blender's mesh."""
-
-    def __init__(self) -> None:
-        self.corners: list[Indices] = []
-        self.faces: list[tuple[int, Indices]] = []
-        self._rows: list[Indices] = []
-        self._points: list[Floats] = []
-
-    def add(self, assembly: Assembly, number: int, q: Floats) -> None:
-        """Add a part at positions `q`, (N, 3)."""
-        mesh = assembly.meshes[number]
-        rows = np.arange(len(mesh.local), dtype=np.int32) if mesh.cropped is None else mesh.cropped.vertices
-        self._rows.append(rows)
-        self._points.append(q[assembly.vertices(number)])
-        self.corners.append(rows[mesh.triangles])
-        self.faces.append((mesh.part, mesh.faces))
-
-    def points(self) -> Floats:
-        """All vertices, (n, 3), also those without faces."""
-        rows, points = np.concatenate(self._rows), np.concatenate(self._points)
-        found = np.tile(points[:1], (int(rows.max(initial=-1)) + 1, 1))
-        found[rows] = points
-        return found
 
 
 def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
@@ -298,25 +235,25 @@ class Mating:
     The stiff pieces of a machine have no skin that bends; what they have in common at a joint is this.
 
     Attributes:
-        names: of the objects of all meshes.
+        meshes: all.
         flags: for each mesh and each joint, the vertices of such triangles, (n,).
         pairs: mesh and triangle of both, (k, 4).
     """
 
-    names: Sequence[str]
+    meshes: Sequence[VisibleMesh]
     flags: Sequence[Sequence[Flags]]
     pairs: Indices
 
-    def mates(self, divisions: Sequence[Division]) -> list[frozenset[tuple[int, str, int]]]:
+    def mates(self, divisions: Sequence[Division]) -> list[frozenset[tuple[int, Part]]]:
         """Of each mesh, the parts around joints that cut others there, and each with the neighbours of the other."""
         parts = [each.labels for each in divisions]
         first, second = (_gather(parts, self.pairs[:, k : k + 2]) for k in (0, 2))
         rows = np.unique(np.stack([self.pairs[:, 0], first, self.pairs[:, 2], second], axis=1), axis=0)
-        found: list[set[tuple[int, str, int]]] = [set() for _ in divisions]
+        found: list[set[tuple[int, Part]]] = [set() for _ in divisions]
         for a, p, b, q in rows.tolist():
             if p < divisions[a].regions.joints and q < divisions[b].regions.joints and (a, p) != (b, q):
-                found[a] |= {(each, self.names[b], q) for each in divisions[a].touching(p)}
-                found[a] |= {(p, self.names[b], each) for each in divisions[b].touching(q)}
+                found[a] |= {(each, part_of(self.meshes[b], q)) for each in divisions[a].touching(p)}
+                found[a] |= {(p, part_of(self.meshes[b], each)) for each in divisions[b].touching(q)}
         return [frozenset(each) for each in found]
 
 
@@ -335,7 +272,7 @@ def find_mating(skins: Sequence[Skin], joints: Sequence[Joint]) -> Mating:
             for number in np.unique(mesh).tolist():
                 flags[number][place][skins[number].corners[triangle[mesh == number]]] = True
             pairs.append(between)
-    return Mating([skin.mesh.owner.name for skin in skins], flags, np.concatenate(pairs))
+    return Mating([skin.mesh for skin in skins], flags, np.concatenate(pairs))
 
 
 def _gather(values: Sequence[NDArray[Any]], places: Indices) -> NDArray[Any]:

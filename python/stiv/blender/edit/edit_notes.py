@@ -10,7 +10,7 @@ import numpy as np
 
 import stiv
 from stiv.blender.controls.control_set import ControlSet
-from stiv.blender.controls.joint_regions import fold_note
+from stiv.blender.controls.joint_folds import fold_note
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.edit.motion_goal import MotionGoal
 from stiv.blender.edit.solver import EditSolver

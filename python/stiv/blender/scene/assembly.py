@@ -20,8 +20,8 @@ from stiv.seams import Seams, find_seams
 ROUNDING = 2.0**-19  # of an object's extent; Blender computes the copies of a seam separately, in single precision
 
 _Body = tuple[str, str, frozenset[str], frozenset[str], int]  # object, mobility, evaluations, roots of strands, part
-UntestedParts = tuple[tuple[str, int], tuple[str, int]]
-"""Two parts of meshes, each by the name of its object and its number, that are not tested against each other."""
+Part = tuple[str, frozenset[str], int]
+"""A part of a mesh: the name of its object, the evaluations that show it, and its number."""
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ def assemble(
     together: Sequence[frozenset[str]] = (),
     ignored: Sequence[tuple[str, str]] = (),
     seams: Sequence[Seams | None] = (),
-    untested: Collection[UntestedParts] = (),
+    untested: Collection[tuple[Part, Part]] = (),
 ) -> Assembly:
     """Assemble meshes into one surface.
 
@@ -222,7 +222,7 @@ def _ignored_bodies(
     bodies: Mapping[_Body, int],
     together: Sequence[frozenset[str]],
     ignored: Sequence[tuple[str, str]],
-    untested: frozenset[UntestedParts],
+    untested: frozenset[tuple[Part, Part]],
 ) -> list[tuple[int, int]]:
     pairs = set()
     for (first, kind, here, roots, part), a in bodies.items():
@@ -231,9 +231,8 @@ def _ignored_bodies(
                 continue
             rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
             rooted = first in grown or second in roots
-            folds = not untested.isdisjoint(
-                {((first, part), (second, part_of_other)), ((second, part_of_other), (first, part))}
-            )
+            both = (first, here, part), (second, there, part_of_other)
+            folds = both in untested or both[::-1] in untested
             if rigid or rooted or folds or not here & there or (first, second) in ignored or (second, first) in ignored:
                 pairs.add((a, b))
     return sorted(pairs)
