@@ -4,8 +4,8 @@
 MESSAGES = {
     "1 loose edge or vertex touches it and is not tested": "1 个松散边或顶点与其接触，不受检测",
     "allow more time, or select fewer objects": "请延长时间，或减少所选物体",
-    "the scene's excluded pairs cannot be read; use Clear Excluded Collisions": "无法读取场景的排除列表;请使用“清除排除的碰撞”",
-    "this frame shows it differently; go back to frame {}": "此帧显示不同;请回到第 {} 帧",
+    "the scene's excluded pairs cannot be read; use Clear Excluded Collisions": "无法读取场景的排除列表；请使用“清除排除的碰撞”",
+    "this frame shows it differently; go back to frame {}": "此帧显示不同；请回到第 {} 帧",
     "the next frame resets it to its keyframes; key it": "下一帧会将其重置为关键帧；请插入关键帧",
     '"{}" instances it; make the instances real': "被“{}”实例化；请使实例独立",
     "1 pair of faces cut each other{}": "1 对面相交{}",

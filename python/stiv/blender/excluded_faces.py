@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiv import InputError
+from stiv.blender.scene.arrays import split_by_number
 
 Keys = NDArray[np.int64]
 Rows = NDArray[np.int64]
@@ -95,10 +96,8 @@ class Exclusions:
         """
         keys, count = _keys(self.rows[:, ::2], self.rows[:, 1::2]), len(self.names)
         codes, numbers = np.unique(self.rows[:, 0] * count + self.rows[:, 2], return_inverse=True)
-        order = np.argsort(numbers.reshape(-1), kind="stable")
-        groups = np.split(order, np.cumsum(np.bincount(numbers.reshape(-1), minlength=len(codes)))[:-1])
         found: dict[tuple[str, str], list[Keys]] = {}
-        for code, rows in zip(codes.tolist(), groups, strict=False):
+        for code, rows in zip(codes.tolist(), split_by_number(numbers.reshape(-1)), strict=False):
             a, b = sorted(self.names[k].partition("\n")[0] for k in divmod(code, count))
             found.setdefault((a, b), []).append(keys[rows].ravel())
         return {names: np.unique(np.concatenate(each)) for names, each in found.items()}

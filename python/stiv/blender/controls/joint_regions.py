@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -143,7 +144,7 @@ def divide_all(
     joins = tuple(seams) or (None,) * len(meshes)
     skins = [Skin(mesh, *each, own) for mesh, each, own in zip(meshes, weights, joins, strict=True)]
     mating = find_mating(skins, joints if radii > 0 else ())
-    divisions = [divide(skin, joints, radii, flags) for skin, flags in zip(skins, mating.flags, strict=True)]
+    divisions = [divide(skin, joints, radii, own) for skin, own in zip(skins, mating.vertices, strict=True)]
     found = [replace(each.regions, mates=mates) for each, mates in zip(divisions, mating.mates(divisions), strict=True)]
     ends = np.cumsum([len(mesh.local) for mesh in meshes])[:-1]
     for number, (mesh, rows) in enumerate(zip(meshes, np.split(jacobian, ends), strict=True)):
@@ -193,19 +194,21 @@ def _bends(mesh: VisibleMesh, jacobian: Floats) -> bool:
     return bool((np.abs(change) > BENDING * (along * along).sum(axis=1)[:, None] + 1e-12).any())
 
 
-def divide(skin: Skin, joints: Sequence[Joint], radii: float, mating: Sequence[Flags] = ()) -> Division:
+def divide(
+    skin: Skin, joints: Sequence[Joint], radii: float, mating: Mapping[int, Indices] = MappingProxyType({})
+) -> Division:
     """Divide a mesh.
 
-    radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region. mating: for each
-    joint, flags of the vertices, (n,), of triangles that cut others across it.
+    radii: distance from a joint that its region reaches, in radii of the limb; 0 leaves no region. mating: by number of
+    a joint, the vertices of triangles that cut others across it.
     """
     mesh, corners, owners = skin.mesh, skin.rows, skin.owners
     around, beside = np.zeros((2, len(mesh.local)), bool)
     edges = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     for number, joint in enumerate(joints if radii > 0 else ()):
-        flags = mating[number] if len(mating) else np.zeros(len(mesh.local), bool)
-        around |= _region(skin, joint, radii, edges, flags)
-        beside |= _region(skin, joint, COLLAR * radii, edges, flags)
+        vertices = mating.get(number, np.empty(0, np.int32))
+        around |= _region(skin, joint, radii, edges, vertices)
+        beside |= _region(skin, joint, COLLAR * radii, edges, vertices)
     in_joint = _of_faces(owners, np.any(around[corners], axis=1))
     if not in_joint.any():
         return Division(Regions((mesh,), frozenset(), 0, 0), np.zeros(len(corners), np.int32), frozenset())
@@ -236,12 +239,12 @@ class Mating:
 
     Attributes:
         meshes: all.
-        flags: for each mesh and each joint, the vertices of such triangles, (n,).
+        vertices: for each mesh, the vertices of such triangles by number of the joint.
         pairs: mesh and triangle of both, (k, 4).
     """
 
     meshes: Sequence[VisibleMesh]
-    flags: Sequence[Sequence[Flags]]
+    vertices: Sequence[Mapping[int, Indices]]
     pairs: Indices
 
     def mates(self, divisions: Sequence[Division]) -> list[frozenset[tuple[int, Part]]]:
@@ -259,9 +262,9 @@ class Mating:
 
 def find_mating(skins: Sequence[Skin], joints: Sequence[Joint]) -> Mating:
     """The triangles of meshes that joints turn against each other and that cut at the start."""
-    flags = [[np.zeros(len(skin.mesh.local), bool) for _ in joints] for skin in skins]
+    vertices: list[dict[int, Indices]] = [{} for _ in skins]
     pairs = [np.empty((0, 4), np.int32)]
-    for evaluation in dict.fromkeys(skin.mesh.read_from for skin in skins):
+    for evaluation in dict.fromkeys(skin.mesh.read_from for skin in skins) if joints else ():
         numbers = [number for number, skin in enumerate(skins) if skin.mesh.read_from == evaluation]
         cuts = _cuts([skins[number] for number in numbers])
         cuts[:, ::2] = np.array(numbers, np.int32)[cuts[:, ::2]]
@@ -270,9 +273,9 @@ def find_mating(skins: Sequence[Skin], joints: Sequence[Joint]) -> Mating:
             between = cuts[_gather(follows, cuts[:, :2]) != _gather(follows, cuts[:, 2:])]
             mesh, triangle = between.reshape(-1, 2).T
             for number in np.unique(mesh).tolist():
-                flags[number][place][skins[number].corners[triangle[mesh == number]]] = True
+                vertices[number][place] = skins[number].corners[triangle[mesh == number]].ravel()
             pairs.append(between)
-    return Mating([skin.mesh for skin in skins], flags, np.concatenate(pairs))
+    return Mating([skin.mesh for skin in skins], vertices, np.concatenate(pairs))
 
 
 def _gather(values: Sequence[NDArray[Any]], places: Indices) -> NDArray[Any]:
@@ -294,13 +297,13 @@ def _cuts(skins: Sequence[Skin]) -> Indices:
     return np.stack([mesh, triangle], axis=2).reshape(-1, 4).astype(np.int32)
 
 
-def _region(skin: Skin, joint: Joint, radii: float, edges: Indices, mating: Flags) -> Flags:
+def _region(skin: Skin, joint: Joint, radii: float, edges: Indices, mating: Indices) -> Flags:
     """The vertices around a joint, (n,): connected to those that it bends or that mate there, and near it."""
     share = skin.share(joint.bones)
     bent = (share > BLENDED[0]) & (share < BLENDED[1])
     crossing = (share[edges] < 0.5).any(axis=1) & (share[edges] >= 0.5).any(axis=1)
     bent[edges[crossing]] = True
-    bent |= mating
+    bent[mating] = True
     bent &= skin.is_first
     if not bent.any():
         return bent

@@ -13,13 +13,18 @@ from stiv.points import apply_linear, transform_points
 
 __all__ = [
     "Flags", "Floats", "Indices", "Singles", "apply_linear", "as_matrix", "diagonal_of", "digest", "extents", "invert",
-    "islands", "pair_codes", "read_collection", "to_local", "transform_points", "translation_matrix",
+    "islands", "pair_codes", "read_collection", "split_by_number", "to_local", "transform_points", "translation_matrix",
 ]  # fmt: skip
 
 Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 Indices = NDArray[np.int32]
 Flags = NDArray[np.bool_]
+
+
+def split_by_number(numbers: NDArray[Any]) -> list[NDArray[np.int64]]:
+    """For each number from 0 to the largest, the rows, ascending, of the numbers, (k,), that are equal to it."""
+    return np.split(np.argsort(numbers, kind="stable"), np.cumsum(np.bincount(numbers))[:-1])
 
 
 def pair_codes(pairs: NDArray[Any]) -> NDArray[np.int64]:

@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from stiv.blender.scene.arrays import Indices
+from stiv.blender.scene.arrays import Indices, split_by_number
 from stiv.blender.scene.evaluations import SHOWN
 
 PART = "\t"  # between the name of an object and the number of a part
@@ -145,8 +145,7 @@ class FacePairs(Sequence[FacePair]):
         for number, (first, second) in enumerate(owners):
             a, b = sorted((first.object, second.object))
             groups[number] = names.setdefault((a, b), len(names))
-        group = groups[numbers]
-        rows = np.split(np.argsort(group, kind="stable"), np.cumsum(np.bincount(group))[:-1])
+        rows = split_by_number(groups[numbers])
         return {both: self.chosen(own) for both, own in zip(names, rows, strict=False)}
 
     def _pairs_of_owners(self) -> tuple[list[tuple[Element, Element]], Indices]:
