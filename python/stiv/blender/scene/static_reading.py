@@ -48,7 +48,7 @@ def read_static_meshes(
     readers = _Readers(context)
     for key, shown, matrix in _visible(context, names):
         reader, known = readers.reader(shown), _latest.get(key)
-        if known is None or not np.array_equal(matrix, known.matrix) or not reader.agrees_with(known.shape):
+        if known is None or not _is_current(known, reader, matrix):
             known = _make(reader, key, matrix, shown_in)
         found[key] = known if known.shown_in == shown_in else replace(known, shown_in=shown_in)
     _latest = found
@@ -60,13 +60,14 @@ def find_changed(context: bpy.types.Context, meshes: Sequence[StaticMesh]) -> st
     left, readers = {(each.owner, each.source, each.number): each for each in meshes}, _Readers(context)
     for key, shown, matrix in _visible(context, {each.owner.name for each in meshes}):
         known = left.pop(key, None)
-        if (
-            known is None
-            or not np.array_equal(matrix, known.matrix)
-            or not readers.reader(shown).agrees_with(known.shape)
-        ):
+        if known is None or not _is_current(known, readers.reader(shown), matrix):
             return key[0].name
     return next((owner.name for owner, _, _ in left), "")
+
+
+def _is_current(known: StaticMesh, reader: _Reader, matrix: Floats) -> bool:
+    """Does Blender still show the mesh as it was read?"""
+    return np.array_equal(matrix, known.matrix) and reader.agrees_with(known.shape)
 
 
 def prepare_static_meshes_steps(context: bpy.types.Context, names: Collection[str]) -> Steps[None]:
