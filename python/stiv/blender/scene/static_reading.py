@@ -66,7 +66,7 @@ def find_changed(context: bpy.types.Context, meshes: Sequence[StaticMesh]) -> st
 
 
 def _is_current(known: StaticMesh, reader: _Reader, matrix: Floats) -> bool:
-    """Does Blender still show the mesh as it was read?"""
+    """Does Blender still show the mesh that was read?"""
     return np.array_equal(matrix, known.matrix) and reader.agrees_with(known.shape)
 
 
