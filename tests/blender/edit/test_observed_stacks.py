@@ -286,6 +286,17 @@ def test_what_no_edit_can_follow_is_refused(message: str, mode: str) -> None:
         BlenderEdit.begin(bpy.context, EditSettings(), "move")  # it moves as a whole
 
 
+def test_a_modifier_that_only_the_render_shows_is_disabled_there() -> None:
+    """The message leads on: disable it in the viewport, then in renders, and the edit begins."""
+    ocean = with_modifier("OCEAN", resolution=2).modifiers["It"]
+    open_piece(ocean.id_data, "deforming")
+    ocean.show_viewport = False
+    with pytest.raises(stiv.InputError, match='Piece: Ocean "It" hides edits; disable in renders'):
+        begin()
+    ocean.show_render = False
+    begin().finish()
+
+
 def test_a_modifier_without_a_surface_is_named() -> None:
     ob = with_modifier("MASK")
     select(ob)

@@ -111,9 +111,15 @@ def check_dependents(
             continue
         for dependency in dependencies(bpy.data.objects[name], evaluations):
             if dependency.used in deforming:
-                raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable it')
+                raise _deforming_error(name, dependency)
             if dependency.used in moved:
                 raise InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; select both')
+
+
+def _deforming_error(name: str, dependency: Dependency) -> InputError:
+    if dependency.is_hidden:
+        return InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable in renders')
+    return InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable it')
 
 
 def check_instances(moved: set[str], meshes: Iterable[VisibleMesh], groups: Iterable[RigidGroup] = ()) -> None:

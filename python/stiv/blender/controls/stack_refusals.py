@@ -57,7 +57,13 @@ def check_twin(ob: bpy.types.Object, twin: StackTwin, moves: list[Singles], agre
         raise modifier_error(ob, name, "flips quads" if flips else "changes topology")
     if not _has_effect(found, moves):
         name = _first(twin, moves, lambda each: not _has_effect(each, moves))
-        raise modifier_error(ob, name, "simulated" if ob.modifiers[name].type in SIMULATIONS else "ignores vertices")
+        raise modifier_error(ob, name, _why_without_effect(ob.modifiers[name]))
+
+
+def _why_without_effect(modifier: bpy.types.Modifier) -> str:
+    if modifier.type in SIMULATIONS:
+        return "simulated"
+    return "ignores vertices" if modifier.show_viewport else "ignores vertices in renders"
 
 
 def no_surface_error(ob: bpy.types.Object) -> InputError:

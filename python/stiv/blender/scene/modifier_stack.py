@@ -27,6 +27,7 @@ MODIFIER_REASONS = {
     "deformed lattice": 'deforms it; select "{other}" instead',
     "flips quads": "flips quads; set Quad Method to Fixed",
     "ignores vertices": "hides edits; disable it",
+    "ignores vertices in renders": "hides edits; disable in renders",
     "no surface": "shows no surface; disable it",
     "of lattice": "deforms the lattice; apply it",
     "own transform": "depends on its transform; apply it",
