@@ -284,8 +284,7 @@ def test_messages_fit_the_status_bar() -> None:
     of_reason["own transform"] = [kinds["NODES"]]
     of_reason["no surface"] = [kinds[kind] for kind in ("MASK", "BUILD", "NODES", "REMESH", "MESH_TO_VOLUME")]
     of_reason["of lattice"] = [kinds[kind] for kind in FOR_LATTICES]
-    moving = [name for kind, name in kinds.items() if "VERTEX_WEIGHT" not in kind]
-    of_reason["ignores vertices in renders"] = moving
+    of_reason["ignores vertices in renders"] = [kinds[kind] for kind in kinds if "VERTEX_WEIGHT" not in kind]
     messages = [
         f'{NAME}: {kind} "{NAME}" {text.format(other=NAME)}'
         for reason, text in MODIFIER_REASONS.items()

@@ -117,7 +117,7 @@ def check_dependents(
 
 
 def _deforming_error(name: str, dependency: Dependency) -> InputError:
-    if dependency.is_hidden:
+    if dependency.renders_only:
         return InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable in renders')
     return InputError(f'{name}: {dependency.through} depends on "{dependency.used}"; disable it')
 

@@ -19,13 +19,13 @@ T = TypeVar("T", str, int, tuple[int, bool])  # objects by name or session numbe
 class Dependency:
     """Object `user` refers to object `used` through a modifier or constraint, named as in messages.
 
-    is_hidden: only the render shows the modifier.
+    renders_only: the viewport does not show the modifier.
     """
 
     user: str
     used: str
     through: str
-    is_hidden: bool = False
+    renders_only: bool = False
 
 
 def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,)) -> Iterator[Dependency]:
@@ -33,9 +33,9 @@ def dependencies(ob: bpy.types.Object, evaluations: Collection[str] = (VIEWPORT,
     for owner in active_owners(ob, evaluations):
         is_modifier = isinstance(owner, bpy.types.Modifier)
         through = modifier_title(owner) if is_modifier else f'constraint "{owner.name}"'
-        is_hidden = is_modifier and not owner.show_viewport
+        renders_only = is_modifier and not owner.show_viewport
         others = (each for each in referenced_objects(owner) if each != ob)
-        yield from (Dependency(ob.name, each.name, through, is_hidden) for each in others)
+        yield from (Dependency(ob.name, each.name, through, renders_only) for each in others)
 
 
 def active_owners(ob: bpy.types.Object, evaluations: Collection[str]) -> Iterator[Any]:
