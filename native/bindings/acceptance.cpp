@@ -22,6 +22,11 @@ Edges find_intersections(const SurfacePointer& surface, const PositionsView& q, 
   return as_rows(IntersectionTest(surface).find(q, execution));
 }
 
+Eigen::VectorXd depths_of(const SurfacePointer& surface, const IndexPairs& pairs, const PositionsView& q) {
+  const std::vector<double> depths = intersection_depths(*surface, pairs, q);
+  return Eigen::Map<const Eigen::VectorXd>(depths.data(), static_cast<Eigen::Index>(depths.size()));
+}
+
 std::pair<Edges, Edges> find_loose_intersections(const SurfacePointer& surface, const PositionsView& q, double distance,
                                                  int threads) {
   Execution execution(threads);
@@ -99,6 +104,7 @@ void bind_acceptance(py::module_& module) {
   module.def("find_intersections", &find_intersections, surface, positions, threads, Release());
   module.def("find_loose_intersections", &find_loose_intersections, surface, positions, py::arg("distance"), threads,
              Release());
+  module.def("intersection_depths", &depths_of, surface, py::arg("pairs"), positions, Release());
   module.def("is_step_free", &step_is_free, surface, start, end, separation, threads, Release());
   module.def("stored_mesh", &stored_mesh, py::arg("mesh"), py::arg("frame"));
   module.def(

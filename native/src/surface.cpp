@@ -197,6 +197,22 @@ bool Surface::in_one_flip_face(const Index* vertices, std::size_t count) const {
   return false;
 }
 
+std::vector<Index> Surface::connected_components() const {
+  std::vector<Index> component(static_cast<std::size_t>(vertex_count()), -1);
+  std::vector<Index> waiting;
+  for (Index first = 0; first < vertex_count(); ++first) {
+    if (component[at(first)] < 0) waiting.push_back(first);
+    while (!waiting.empty()) {
+      const Index vertex = waiting.back();
+      waiting.pop_back();
+      if (component[at(vertex)] >= 0) continue;
+      component[at(vertex)] = first;
+      waiting.insert(waiting.end(), neighbours_begin(vertex), neighbours_end(vertex));
+    }
+  }
+  return component;
+}
+
 Eigen::VectorXd Surface::vertex_areas(const PositionsView& q) const {
   Eigen::VectorXd areas = Eigen::VectorXd::Zero(vertex_count());
   add_vertex_areas(q, 0, static_cast<Index>(triangles().rows()), areas, Execution(1));

@@ -34,6 +34,7 @@ from stiv.intersections import (
     StepCheck,
     find_intersections,
     find_loose_intersections,
+    intersection_depths,
     is_step_free,
 )
 from stiv.job import CancelledError, Job, JobProgress
@@ -95,6 +96,7 @@ __all__ = [
     "find_intersections",
     "find_loose_intersections",
     "identity",
+    "intersection_depths",
     "is_step_free",
     "join_seams",
     "laplacian",

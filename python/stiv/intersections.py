@@ -4,7 +4,7 @@
 from numpy.typing import ArrayLike
 
 from stiv import _native
-from stiv.arrays import Floats, Indices, as_count, as_floats, as_number, as_reals
+from stiv.arrays import Floats, Indices, as_count, as_floats, as_indices, as_number, as_reals
 from stiv.surface import Surface, as_surface
 
 
@@ -27,6 +27,24 @@ def find_intersections(
     """
     surface, q = _prepared(vertices, triangles, all_bodies)
     return _native.find_intersections(surface.native, q, as_count(threads, "threads"))
+
+
+def intersection_depths(vertices: ArrayLike, triangles: Surface | ArrayLike, pairs: ArrayLike) -> Floats:
+    """Return a bound of the depth to which each pair of triangles intersects, (K,), in the units of the vertices.
+
+    vertices    (N, 3) positions
+    triangles   (F, 3) vertex indices, or a Surface
+    pairs       (K, 2) int32, of find_intersections
+
+    The depth is the shortest motion that parts the two along one of their separating axes: rounding for triangles that
+    only touch, 0 for those that are apart. Corners that they share do not count as an intersection.
+
+    Raises InputError as find_intersections does, and for pairs out of range.
+    """
+    surface, q = _prepared(vertices, triangles, all_bodies=False)
+    return _native.intersection_depths(
+        surface.native, as_indices(pairs, "pairs", (None, 2), len(surface.triangles)).tolist(), q
+    )
 
 
 class IntersectionTest:

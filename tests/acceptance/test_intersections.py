@@ -170,6 +170,32 @@ def test_loose_edges_and_vertices_nearer_than_a_distance(height: float, distance
     assert points.tolist() == near + ([[7, 0]] if height / math.sqrt(2) < distance else [])
 
 
+@settings(max_examples=examples(25), deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_no_motion_shorter_than_the_depth_parts_triangles(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    corners, faces = random.normal(size=(6, 3)), np.array([[0, 1, 2], [3, 4, 5]])
+    (depth,) = stiv.intersection_depths(corners, faces, [[0, 1]])
+    assert (depth > 0) == (len(stiv.find_intersections(corners, faces)) == 1)
+
+    def intersect_after(motion: Floats) -> bool:
+        moved = corners.copy()
+        moved[3:] += motion
+        return len(stiv.find_intersections(moved, faces)) == 1
+
+    if depth > 0:
+        sides = [np.roll(each, -1, axis=0) - each for each in (corners[:3], corners[3:])]
+        axes = [np.cross(each[0], each[1]) for each in sides] + [np.cross(a, b) for a in sides[0] for b in sides[1]]
+        directions = [sign * axis / np.linalg.norm(axis) for axis in axes for sign in (1, -1)]
+        assert not all(intersect_after(1.001 * depth * direction) for direction in directions)
+        assert all(intersect_after(0.999 * depth * direction) for direction in directions)
+
+
+def test_pairs_without_a_depth_are_named() -> None:
+    with pytest.raises(stiv.InputError, match="pairs, row 0: index 2"):
+        stiv.intersection_depths(np.eye(3), [[0, 1, 2], [0, 2, 1]], [[0, 2]])
+
+
 @pytest.mark.parametrize(
     ("vertices", "faces", "message"),
     [

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stiv
-from blend_fixtures.scenes.primitives import grid, icosphere, triangulated
+from blend_fixtures.scenes.primitives import box, grid, icosphere, triangulated
 from blend_fixtures.scenes.shape import joined
 
 
@@ -202,6 +202,73 @@ def test_faces_that_touch_are_not_pressed_through_each_other(seed: int) -> None:
         assert all(parting_motion(*q[surface.triangles[list(pair)]]) < 1e-5 for pair in new)
         upper, lower = q[patch].mean(axis=0), q[:81][np.linalg.norm(q[:81] - q[patch].mean(axis=0), axis=1) < 0.6]
         assert (upper - lower.mean(axis=0)) @ normal > -0.02  # bent, but not below
+
+
+def flush_boxes(place: tuple[float, float, float], size: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray]:
+    """One body of two boxes: a unit cube, and one that touches it; the second has vertices 8 to 15."""
+    first, second = np.full(3, 0.5), np.array(place) + np.array(size) / 2
+    whole = joined([triangulated(box(1, (1, 1, 1))).moved(first), triangulated(box(1, size)).moved(second)])
+    return whole.triangles(), whole.vertices.astype(np.float32).astype(float)
+
+
+FLUSH = {
+    "whole sides": ((1, 0, 0), (1, 1, 1)),
+    "inside a side": ((1, 0.25, 0.25), (1, 0.5, 0.5)),
+    "across an edge": ((1, 0.5, -0.5), (0.5, 1, 1)),
+    "along an edge": ((1, 0.25, 1), (0.5, 0.5, 1)),
+}
+
+
+def session_of_flush_boxes(place: str) -> tuple[stiv.EditSession, np.ndarray]:
+    triangles, start = flush_boxes(*FLUSH[place])
+    assert len(stiv.find_intersections(start, triangles)) > 0
+    frame = stiv.StorageFrame(0, len(start), np.eye(4))
+    options = stiv.EditOptions(exclude="intersecting", storage=[frame])
+    return stiv.EditSession(triangles, stiv.identity(len(start)), start, options), triangles
+
+
+def deepest(q: np.ndarray, triangles: np.ndarray) -> float:
+    """The greatest depth of two triangles without common corners, by an independent test."""
+    pairs = stiv.find_intersections(q, triangles).tolist()
+    apart = [pair for pair in pairs if not set(triangles[pair[0]]) & set(triangles[pair[1]])]
+    return max((parting_motion(*q[triangles[pair]]) for pair in apart), default=0.0)
+
+
+STORED = 16 * 2.0**-22  # rounding of coordinates below 4, as four times the least separation
+
+
+@pytest.mark.parametrize("place", FLUSH)
+@pytest.mark.parametrize("seed", range(6))
+def test_parts_that_only_touch_never_cut_each_other(place: str, seed: int) -> None:
+    (session, triangles), chance = session_of_flush_boxes(place), np.random.default_rng(seed)
+    for _ in range(4):
+        goal = session.controls
+        chosen = slice(8, 16) if chance.random() < 0.5 else [int(chance.integers(16))]
+        goal[chosen] += chance.normal(scale=0.2, size=3)
+        session.edit(goal)
+        assert deepest(session.surface, triangles) < STORED
+
+
+@pytest.mark.parametrize("place", FLUSH)
+def test_parts_that_only_touch_part_slide_and_move_together(place: str) -> None:
+    out = np.array([0.3, 0.0, 0.1 if place == "along an edge" else 0.0])
+    for motion, moving in ((out, slice(8, 16)), (np.array([0.0, 0.2, 0.0]), slice(8, 16)), (out, slice(0, 16))):
+        session, triangles = session_of_flush_boxes(place)
+        goal = session.controls
+        goal[moving] += motion
+        session.edit(goal)
+        np.testing.assert_allclose(session.controls, goal, atol=1e-4)
+        assert deepest(session.surface, triangles) < STORED
+
+
+def test_a_part_slides_along_the_side_that_it_is_pressed_into() -> None:
+    session, _ = session_of_flush_boxes("inside a side")
+    session.set_weights(np.repeat([0.0, 1.0], 8))  # the cube is pinned
+    goal = session.controls
+    touches = (goal[:, 0] == 1) & (np.arange(16) >= 8)
+    goal[8:] += (-0.2, 0.1, 0.2)
+    session.edit(goal)
+    np.testing.assert_allclose(session.controls - goal, np.outer(touches, (0.2, 0, 0)), atol=1e-3)
 
 
 @pytest.mark.parametrize("seed", range(8))

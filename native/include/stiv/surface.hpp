@@ -78,6 +78,9 @@ class Surface {
     return neighbours_.data() + neighbour_start_[static_cast<std::size_t>(vertex) + 1];
   }
 
+  /// The first vertex of each vertex's connected component, (N).
+  std::vector<Index> connected_components() const;
+
   /// The barycentric area of each vertex, (N), at positions q: a third of the adjacent triangles' areas. [P4, Eq. 3]
   Eigen::VectorXd vertex_areas(const PositionsView& q) const;
   /// Adds what the triangles [first, end) contribute to them, in order.

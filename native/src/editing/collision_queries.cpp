@@ -121,8 +121,11 @@ std::optional<Events> CollisionQueries::find(const Positions& from, const Positi
   const ScopedTimer timer(execution.timings.detection);
   guard_pairs_apart_at(from, execution);
   Detector& detector = guard_->round_detector ? *guard_->round_detector : guard_->detector;
-  return find_not_excluded(detector, context_.centred(from, centred_start_, execution),
-                           context_.centred(to, centred_end_, execution), context_.round_proximity(), limit, execution);
+  std::optional<Events> events =
+      find_not_excluded(detector, context_.centred(from, centred_start_, execution),
+                        context_.centred(to, centred_end_, execution), context_.round_proximity(), limit, execution);
+  if (events) excluded_.add_contacts(*events, from, to);
+  return events;
 }
 
 /// Rows of a surface and of the obstacles after it, relative to the center.

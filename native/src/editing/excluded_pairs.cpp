@@ -58,14 +58,27 @@ struct PlacedTriangles {
   double depth(Index a, Index b) const { return intersection_depth(corners(a), corners(b), q); }
 };
 
+/// The contact of two triangles at the start of a step: that of the corner of the first and the corner of the second
+/// that overlap most along the normal at its end.
+Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::array<Index, 3> second,
+                    const PositionsView& end) {
+  const auto is_lower = [&](Index i, Index j) { return end.row(i).dot(normal) < end.row(j).dot(normal); };
+  std::iter_swap(second.begin(), std::max_element(second.begin(), second.end(), is_lower));
+  Event event;
+  event.vertices = {*std::min_element(first.begin(), first.end(), is_lower), second[0], second[1], second[2]};
+  event.weights = {1, -1, 0, 0};
+  event.normal = normal;
+  event.is_plane = true;
+  return event;
+}
+
 }  // namespace
 
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
                              const PositionsView& start, double least, Execution& execution)
-    : surface_(std::move(surface)),
-      least_(least),
-      pairs_(checked(pairs, static_cast<Index>(surface_->triangles().rows()))) {
-  if (pairs_.empty()) return;
+    : surface_(std::move(surface)), least_(least) {
+  const IndexPairs given = checked(pairs, static_cast<Index>(surface_->triangles().rows()));
+  if (given.empty()) return;
   around_.resize(static_cast<std::size_t>(surface_->vertex_count()));
   const Triangles& triangles = surface_->triangles();
   for (Index triangle = 0; triangle < static_cast<Index>(triangles.rows()); ++triangle)
@@ -74,12 +87,36 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
-  const PlacedTriangles placed{triangles, start};
-  for (const auto& [a, b] : pairs_)
-    if (placed.intersect(a, b)) (placed.depth(a, b) < rounding() ? shallow_ : deep_).emplace_back(a, b);
-  bodies_ = bodies_of_pairs();
+  bodies_ = bodies_of(given);
+  take_given(given, start);
   add_touching(start);
   find_others_that_touch(start, execution);
+}
+
+/// Divides the given pairs by their depth, and by whether their parts only touch.
+void ExcludedPairs::take_given(const IndexPairs& pairs, const PositionsView& start) {
+  const PlacedTriangles placed{surface_->triangles(), start};
+  const std::vector<Index> component = surface_->connected_components();
+  const auto parts = [&](const std::pair<Index, Index>& pair) -> std::pair<Index, Index> {
+    const auto part = [&](Index triangle) { return component[at(surface_->triangles()(triangle, 0))]; };
+    return std::minmax(part(pair.first), part(pair.second));
+  };
+  IndexPairs cutting;
+  for (const auto& pair : pairs) {
+    if (!placed.intersect(pair.first, pair.second)) continue;
+    const bool is_shallow = placed.depth(pair.first, pair.second) < rounding();
+    (is_shallow ? shallow_ : deep_).push_back(pair);
+    if (!is_shallow) cutting.push_back(parts(pair));
+  }
+  sort_unique(cutting);
+  const auto is_flush = [&](const std::pair<Index, Index>& pair) {
+    return surface_->body_of(surface_->triangles()(pair.first, 0)) ==
+               surface_->body_of(surface_->triangles()(pair.second, 0)) &&
+           !std::binary_search(cutting.begin(), cutting.end(), parts(pair));
+  };
+  std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(flush_), is_flush);
+  std::erase_if(shallow_, is_flush);
+  std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
 }
 
 void ExcludedPairs::add_touching(const PositionsView& start) {
@@ -119,16 +156,21 @@ std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
 void ExcludedPairs::find_others_that_touch(const PositionsView& start, Execution& execution) {
   const IndexPairs found = find_touching(surface_, bodies_, start, rounding(), execution);
   std::set_difference(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(touching_));
-  std::merge(pairs_.begin(), pairs_.end(), touching_.begin(), touching_.end(), std::back_inserter(all_));
+  for (const IndexPairs* pairs : {&pairs_, &flush_, &touching_}) all_.insert(all_.end(), pairs->begin(), pairs->end());
+  std::sort(all_.begin(), all_.end());
 }
 
 /// Pairs of bodies, smaller index first, sorted.
-IndexPairs ExcludedPairs::bodies_of_pairs() const {
+IndexPairs ExcludedPairs::bodies_of(const IndexPairs& pairs) const {
   const auto body = [&](Index triangle) { return surface_->body_of(surface_->triangles()(triangle, 0)); };
   IndexPairs bodies;
-  for (const auto& [a, b] : pairs_) bodies.push_back(std::minmax(body(a), body(b)));
+  for (const auto& [a, b] : pairs) bodies.push_back(std::minmax(body(a), body(b)));
   sort_unique(bodies);
   return bodies;
+}
+
+bool ExcludedPairs::may_intersect_shallowly(Index a, Index b) const {
+  return is_among(touching_, a, b) || is_among(flush_, a, b);
 }
 
 std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index* end) const {
@@ -158,7 +200,7 @@ bool ExcludedPairs::covers(const Event& event, const PositionsView& start,
   bool touch = false;
   for (const Index a : first)
     for (const Index b : second) {
-      if (is_among(pairs_, a, b)) continue;
+      if (is_among(pairs_, a, b) || is_among(flush_, a, b)) continue;
       if (!is_among(touching_, a, b)) return false;
       touch = true;
     }
@@ -170,13 +212,24 @@ void ExcludedPairs::remove_from(Events& events, const PositionsView& start,
   if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, start, end); });
 }
 
+void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Positions& to) const {
+  const PlacedTriangles before{surface_->triangles(), from}, after{surface_->triangles(), to};
+  for (const auto& [a, b] : flush_) {
+    if (after.depth(a, b) < rounding() / 2) continue;  // keeps a margin to the depth that is not accepted
+    const Vector3 normal = parting_direction(before.corners(a), before.corners(b), from, to, 2 * rounding());
+    Event contact = contact_along(normal, after.corners(a), after.corners(b), to);
+    contact.clearance.margin = least_;
+    if (normal.dot(weighted_sum(contact, to) - weighted_sum(contact, from)) < 0) events.push_back(contact);
+  }
+}
+
 IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q) const {
   const PlacedTriangles placed{surface_->triangles(), q};
   IndexPairs left;
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
   std::erase_if(left, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return is_among(touching_, a, b) && placed.depth(a, b) < rounding();
+    return may_intersect_shallowly(a, b) && placed.depth(a, b) < rounding();
   });
   return left;
 }
@@ -185,7 +238,7 @@ IntersectionCount ExcludedPairs::count(const IndexPairs& pairs, const PositionsV
   const PlacedTriangles placed{surface_->triangles(), q};
   IntersectionCount found;
   for (const auto& [a, b] : pairs) {
-    if (is_among(touching_, a, b)) continue;
+    if (may_intersect_shallowly(a, b)) continue;
     if (is_among(shallow_, a, b))
       ++found.shallow;
     else if (is_among(deep_, a, b) || placed.depth(a, b) >= rounding())

@@ -19,7 +19,8 @@ struct IntersectionCount {
 };
 
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
-/// bodies that touch, which may intersect no deeper than rounding. An event belongs to every pair of a triangle at its
+/// bodies that touch, which may intersect no deeper than rounding. Nor may the given pairs of one body whose parts only
+/// touch: those of two connected components, or of one, without a pair that intersects deeper at the start. An event belongs to every pair of a triangle at its
 /// first side and one at its second. It is ignored only if each of these pairs is excluded, so that all other pairs
 /// stay guarded. (mathematics.md, "Excluded pairs")
 class ExcludedPairs {
@@ -33,7 +34,7 @@ class ExcludedPairs {
   ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, const PositionsView& start,
                 double least, Execution& execution);
 
-  bool empty() const { return pairs_.empty(); }
+  bool empty() const { return all_.empty(); }
   const IndexPairs& pairs() const { return all_; }  ///< sorted, with the smaller index first
 
   /// Removes the events that belong only to excluded pairs. Those of pairs that touch stay if their primitives are
@@ -42,6 +43,12 @@ class ExcludedPairs {
   /// @param start positions of all vertices at the start of the session, about any origin
   /// @param end position of a vertex at the end of the step, about the same one
   void remove_from(Events& events, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
+
+  /// Adds an event for each pair of parts that only touch at the start of a session, and that intersects deeper than
+  /// rounding at the end of a step: a plane that parts the two triangles at the start of the step. Detection finds no
+  /// time at which triangles begin to touch that already do.
+  /// @param from, to all vertices of the surface
+  void add_contacts(Events& events, const Positions& from, const Positions& to) const;
 
   /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q.
   IndexPairs others(const IndexPairs& pairs, const PositionsView& q) const;
@@ -55,10 +62,12 @@ class ExcludedPairs {
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
+  void take_given(const IndexPairs& pairs, const PositionsView& start);
   void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);
-  IndexPairs bodies_of_pairs() const;
+  IndexPairs bodies_of(const IndexPairs& pairs) const;
+  bool may_intersect_shallowly(Index a, Index b) const;
   bool covers(const Event& event, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
@@ -67,8 +76,9 @@ class ExcludedPairs {
   IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
   IndexPairs pairs_;                        // without limits
   IndexPairs deep_, shallow_;               // those that intersect at the start, shallow: no deeper than rounding
+  IndexPairs flush_;                        // given pairs of parts that only touch
   IndexPairs touching_;                     // other pairs
-  IndexPairs all_;                          // both
+  IndexPairs all_;                          // all of these
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
 };
 

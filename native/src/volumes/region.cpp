@@ -28,6 +28,7 @@ constexpr double least_weight = 1e-6;
 constexpr double least_sine = 1e-3;
 
 bool normal_is_stable(const Event& event, const Positions& start, const Positions& end) {
+  if (event.is_plane) return true;
   for (const double weight : event.weights)
     if (std::abs(weight) < least_weight) return false;
   if (event.kind == EventKind::vertex_face) return true;

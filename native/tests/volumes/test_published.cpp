@@ -32,6 +32,7 @@ struct MovingPair {
     const std::optional<Contact> contact = first_contact_by_polynomial(kind, motion, proximity);
     if (!contact) return std::nullopt;
     return Event{kind,
+                 false,
                  {0, 1, 2, 3},
                  contact->time,
                  contact->weights,

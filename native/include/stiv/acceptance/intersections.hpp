@@ -21,6 +21,12 @@ bool triangles_intersect(const std::array<Index, 3>& first, const std::array<Ind
 /// Pairs of indices, sorted.
 using IndexPairs = std::vector<std::pair<Index, Index>>;
 
+/// For each pair of triangles, a bound of the depth to which they intersect: the shortest motion that parts the two
+/// along one of their separating axes. Corners that they share do not count as an intersection.
+/// @param q (N, 3)
+/// @throws InputError: a triangle out of range
+std::vector<double> intersection_depths(const Surface& surface, const IndexPairs& pairs, const PositionsView& q);
+
 /// All intersections of a surface at rest.
 struct StaticPairs {
   IndexPairs faces;           ///< pairs of triangles, smaller index first

@@ -20,6 +20,7 @@ enum class EventKind : std::uint8_t {
 /// With the weights w: sum_k w_k = 0 and sum_k w_k x_k(time) is the separation vector, from second to first side.
 struct Event {
   EventKind kind = EventKind::vertex_face;
+  bool is_plane = false;  ///< the normal is that of a plane between two faces, also where corners meet
   std::array<Index, 4> vertices{};
   double time = 0;
   std::array<double, 4> weights{};   ///< VF (1, -a, -b, -c); EE (1-s, s, -(1-u), -u)

@@ -42,8 +42,9 @@ struct EditOptions {
   std::vector<Eigen::Matrix3d> weight_axes;  ///< (m) rotations: the three weights act along columns; empty: x, y, z
   /// Pairs of triangles that may intersect, with others that touch (EditSession::excluded). No other pair ever does,
   /// and the number of these that do, deeper than rounding, never grows. Events that belong only to these pairs are
-  /// ignored. The common volume of two closed bodies, and the area of an open body inside a closed one, never exceed
-  /// those of the start. (mathematics.md, "Excluded pairs")
+  /// ignored. Parts of a body that only touch never intersect deeper than rounding. The common volume of two closed
+  /// bodies, and the area of an open body inside a closed one, never exceed those of the start. (mathematics.md,
+  /// "Excluded pairs")
   IndexPairs excluded;
   /// Pairs of bodies that may overlap, but no more than at the start: they can part in any direction. While a pair
   /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")

@@ -112,7 +112,8 @@ class EditSession {
   double separation() const;         ///< h in force
   /// The pairs of triangles that may intersect: those of the options, and other pairs of the same bodies that touch at
   /// the start. Two triangles touch if they are apart, but nearer than storing can keep them. Neighbors of the former
-  /// may then intersect; the others no deeper than rounding. Sorted, smaller index first.
+  /// may then intersect; the others, and parts of one body that only touch, no deeper than rounding. Sorted, smaller
+  /// index first.
   const IndexPairs& excluded() const;
   /// Of the accepted surface; builds a tree at the first call.
   std::optional<NearestTriangles> least_distance(DistancePairs pairs = DistancePairs::between_bodies);

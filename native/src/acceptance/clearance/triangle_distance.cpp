@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
+#include "stiv/acceptance/intersections.hpp"
 #include "stiv/detection/distance.hpp"
+#include "stiv/error.hpp"
 
 namespace stiv {
 
@@ -39,6 +42,18 @@ double parting_motion(const Vector3& axis, const Corners& a, const Corners& b) {
 
 Corners sides_of(const Corners& triangle) {
   return {triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
+}
+
+/// Calls a function with each axis of the separating axis theorem, of any length.
+template <class Call>
+void for_separating_axes(const Corners& a, const Corners& b, const Call& call) {
+  for (const Corners& sides : {sides_of(a), sides_of(b)}) {
+    const Vector3 normal = sides[0].cross(sides[1]);
+    call(normal);
+    for (const Vector3& side : sides) call(normal.cross(side));
+  }
+  for (const Vector3& side : sides_of(a))
+    for (const Vector3& other : sides_of(b)) call(side.cross(other));
 }
 
 using Triangle = std::array<Index, 3>;
@@ -113,15 +128,42 @@ double intersection_depth(const std::array<Index, 3>& first, const std::array<In
   const Vector3 origin = q.row(first[0]);
   const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
   double depth = std::numeric_limits<double>::infinity();
-  const auto part_along = [&](const Vector3& axis) { depth = std::min(depth, parting_motion(axis, a, b)); };
-  for (const Corners& sides : {sides_of(a), sides_of(b)}) {
-    const Vector3 normal = sides[0].cross(sides[1]);
-    part_along(normal);
-    for (const Vector3& side : sides) part_along(normal.cross(side));
-  }
-  for (const Vector3& side : sides_of(a))
-    for (const Vector3& other : sides_of(b)) part_along(side.cross(other));
+  for_separating_axes(a, b, [&](const Vector3& axis) { depth = std::min(depth, parting_motion(axis, a, b)); });
   return depth;
+}
+
+Vector3 parting_direction(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
+                          const PositionsView& start, const PositionsView& end, double tolerance) {
+  const Corners a = seen_from(start.row(first[0]), first, start), b = seen_from(start.row(first[0]), second, start);
+  const Corners a_at_end = seen_from(end.row(first[0]), first, end), b_at_end = seen_from(end.row(first[0]), second, end);
+  Vector3 best = Vector3::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  const auto consider = [&](const Vector3& axis) {
+    if (!(axis.norm() > 0)) return;
+    for (const Vector3& direction : {axis, Vector3(-axis)}) {
+      const double overlap = -gap_along(direction, b_at_end, a_at_end);
+      if (overlap >= least || -gap_along(direction, b, a) >= tolerance) continue;
+      least = overlap;
+      best = direction.normalized();
+    }
+  };
+  for (const Corners& sides : {sides_of(a), sides_of(b)}) consider(sides[0].cross(sides[1]));
+  if (best.isZero()) for_separating_axes(a, b, consider);
+  return best;
+}
+
+std::vector<double> intersection_depths(const Surface& surface, const IndexPairs& pairs, const PositionsView& q) {
+  const Triangles& triangles = surface.triangles();
+  const auto corners = [&](Index triangle) {
+    if (triangle < 0 || triangle >= triangles.rows())
+      throw InputError("pairs: " + std::to_string(triangle) + " is not one of the " +
+                       std::to_string(triangles.rows()) + " triangles");
+    return std::array{triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
+  };
+  std::vector<double> depths;
+  depths.reserve(pairs.size());
+  for (const auto& [a, b] : pairs) depths.push_back(intersection_depth(corners(a), corners(b), q));
+  return depths;
 }
 
 }  // namespace stiv

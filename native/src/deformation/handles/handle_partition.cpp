@@ -54,23 +54,6 @@ void check_fixed(const HandleDefinition& definition) {
   }
 }
 
-/// A label for each vertex, the same for all vertices of a connected component.
-std::vector<Index> connected_components(const Surface& mesh) {
-  std::vector<Index> component(static_cast<std::size_t>(mesh.vertex_count()), -1);
-  std::vector<Index> waiting;
-  for (Index first = 0; first < mesh.vertex_count(); ++first) {
-    if (component[at(first)] < 0) waiting.push_back(first);
-    while (!waiting.empty()) {
-      const Index vertex = waiting.back();
-      waiting.pop_back();
-      if (component[at(vertex)] >= 0) continue;
-      component[at(vertex)] = first;
-      waiting.insert(waiting.end(), mesh.neighbours_begin(vertex), mesh.neighbours_end(vertex));
-    }
-  }
-  return component;
-}
-
 }  // namespace
 
 Surface checked_mesh(const HandleDefinition& definition) {
@@ -87,7 +70,7 @@ HandlePartition handle_partition(const HandleDefinition& definition, const Surfa
   const auto count = static_cast<std::size_t>(mesh.vertex_count());
   HandlePartition partition;
   partition.control = controls_of_vertices(definition);
-  partition.component = connected_components(mesh);
+  partition.component = mesh.connected_components();
   partition.place.assign(count, -1);
   std::vector<unsigned char> moves(count, 0), held(count, 0);
   for (const Index handle : definition.handles) moves[at(partition.component[at(handle)])] = 1;
