@@ -58,6 +58,17 @@ struct PlacedTriangles {
   double depth(Index a, Index b) const { return intersection_depth(corners(a), corners(b), q); }
 };
 
+/// Whether all corners of two triangles move by the same displacement, up to a tolerance.
+bool move_together(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& start,
+                   const PositionsView& end, double tolerance) {
+  const auto displacement = [&](Index vertex) -> Vector3 { return end.row(vertex) - start.row(vertex); };
+  const Vector3 common = displacement(first[0]);
+  const auto deviates = [&](Index vertex) {
+    return (displacement(vertex) - common).squaredNorm() > tolerance * tolerance;
+  };
+  return std::none_of(first.begin(), first.end(), deviates) && std::none_of(second.begin(), second.end(), deviates);
+}
+
 /// The contact of two triangles at the start of a step: that of the corner of the first and the corner of the second
 /// that overlap most along the normal at its end.
 Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::array<Index, 3> second,
@@ -155,9 +166,10 @@ std::vector<Index> ExcludedPairs::with_neighbors(Index triangle) const {
 
 void ExcludedPairs::find_others_that_touch(const PositionsView& start, Execution& execution) {
   const IndexPairs found = find_touching(surface_, bodies_, start, rounding(), execution);
-  std::set_difference(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(touching_));
-  for (const IndexPairs* pairs : {&pairs_, &flush_, &touching_}) all_.insert(all_.end(), pairs->begin(), pairs->end());
-  std::sort(all_.begin(), all_.end());
+  shallow_only_ = flush_;
+  std::set_difference(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(shallow_only_));
+  std::sort(shallow_only_.begin(), shallow_only_.end());
+  std::merge(pairs_.begin(), pairs_.end(), shallow_only_.begin(), shallow_only_.end(), std::back_inserter(all_));
 }
 
 /// Pairs of bodies, smaller index first, sorted.
@@ -167,10 +179,6 @@ IndexPairs ExcludedPairs::bodies_of(const IndexPairs& pairs) const {
   for (const auto& [a, b] : pairs) bodies.push_back(std::minmax(body(a), body(b)));
   sort_unique(bodies);
   return bodies;
-}
-
-bool ExcludedPairs::may_intersect_shallowly(Index a, Index b) const {
-  return is_among(touching_, a, b) || is_among(flush_, a, b);
 }
 
 std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index* end) const {
@@ -201,7 +209,7 @@ bool ExcludedPairs::covers(const Event& event, const PositionsView& start,
   for (const Index a : first)
     for (const Index b : second) {
       if (is_among(pairs_, a, b) || is_among(flush_, a, b)) continue;
-      if (!is_among(touching_, a, b)) return false;
+      if (!is_among(shallow_only_, a, b)) return false;
       touch = true;
     }
   return !touch || touch_at(end);
@@ -215,6 +223,7 @@ void ExcludedPairs::remove_from(Events& events, const PositionsView& start,
 void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Positions& to) const {
   const PlacedTriangles before{surface_->triangles(), from}, after{surface_->triangles(), to};
   for (const auto& [a, b] : flush_) {
+    if (move_together(before.corners(a), before.corners(b), from, to, rounding() / 4)) continue;
     if (after.depth(a, b) < rounding() / 2) continue;  // keeps a margin to the depth that is not accepted
     const Vector3 normal = parting_direction(before.corners(a), before.corners(b), from, to, 2 * rounding());
     Event contact = contact_along(normal, after.corners(a), after.corners(b), to);
@@ -229,7 +238,7 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
   std::erase_if(left, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return may_intersect_shallowly(a, b) && placed.depth(a, b) < rounding();
+    return is_among(shallow_only_, a, b) && placed.depth(a, b) < rounding();
   });
   return left;
 }
@@ -238,7 +247,7 @@ IntersectionCount ExcludedPairs::count(const IndexPairs& pairs, const PositionsV
   const PlacedTriangles placed{surface_->triangles(), q};
   IntersectionCount found;
   for (const auto& [a, b] : pairs) {
-    if (may_intersect_shallowly(a, b)) continue;
+    if (is_among(shallow_only_, a, b)) continue;
     if (is_among(shallow_, a, b))
       ++found.shallow;
     else if (is_among(deep_, a, b) || placed.depth(a, b) >= rounding())

@@ -67,7 +67,6 @@ class ExcludedPairs {
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);
   IndexPairs bodies_of(const IndexPairs& pairs) const;
-  bool may_intersect_shallowly(Index a, Index b) const;
   bool covers(const Event& event, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
@@ -77,7 +76,7 @@ class ExcludedPairs {
   IndexPairs pairs_;                        // without limits
   IndexPairs deep_, shallow_;               // those that intersect at the start, shallow: no deeper than rounding
   IndexPairs flush_;                        // given pairs of parts that only touch
-  IndexPairs touching_;                     // other pairs
+  IndexPairs shallow_only_;                 // these, and others that touch: never deeper than rounding
   IndexPairs all_;                          // all of these
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
 };

@@ -135,7 +135,8 @@ double intersection_depth(const std::array<Index, 3>& first, const std::array<In
 Vector3 parting_direction(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                           const PositionsView& start, const PositionsView& end, double tolerance) {
   const Corners a = seen_from(start.row(first[0]), first, start), b = seen_from(start.row(first[0]), second, start);
-  const Corners a_at_end = seen_from(end.row(first[0]), first, end), b_at_end = seen_from(end.row(first[0]), second, end);
+  const Corners a_at_end = seen_from(end.row(first[0]), first, end),
+                b_at_end = seen_from(end.row(first[0]), second, end);
   Vector3 best = Vector3::Zero();
   double least = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Vector3& axis) {
@@ -156,8 +157,8 @@ std::vector<double> intersection_depths(const Surface& surface, const IndexPairs
   const Triangles& triangles = surface.triangles();
   const auto corners = [&](Index triangle) {
     if (triangle < 0 || triangle >= triangles.rows())
-      throw InputError("pairs: " + std::to_string(triangle) + " is not one of the " +
-                       std::to_string(triangles.rows()) + " triangles");
+      throw InputError("pairs: " + std::to_string(triangle) + " is not one of the " + std::to_string(triangles.rows()) +
+                       " triangles");
     return std::array{triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
   };
   std::vector<double> depths;
