@@ -429,6 +429,9 @@ def find_loose_intersections(
     surface: Surface, positions: Annotated[NDArray[float64], "[m, 3]"], distance: float, threads: int
 ) -> tuple[Annotated[NDArray[int32], "[m, 2]"], Annotated[NDArray[int32], "[m, 2]"]]: ...
 def identity(vertex_count: int) -> Deformation: ...
+def intersection_depths(
+    surface: Surface, pairs: Sequence[tuple[int, int]], positions: Annotated[NDArray[float64], "[m, 3]"]
+) -> Annotated[NDArray[float64], "[m, 1]"]: ...
 def is_step_free(
     surface: Surface,
     start: Annotated[NDArray[float64], "[m, 3]"],

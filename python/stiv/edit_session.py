@@ -80,8 +80,9 @@ class EditSession:
     volume that two closed bodies share never exceeds that at the start of the session. The same holds for the area of
     an open body inside a closed one, with the triangles' areas at the start. The depth of excluded pairs of two open
     bodies, or of one body, has no limit, but collisions of neighboring triangles stop them from passing through each
-    other. Parts of one body that only touch at the start never intersect deeper than rounding. Bodies that always intersect should be `ignored` pairs of the surface. Exclusion would almost fix them to
-    each other, because other triangles would intersect.
+    other. Parts of one body that only touch at the start never intersect deeper than rounding. Bodies that always
+    intersect should be `ignored` pairs of the surface. Exclusion would almost fix them to each other, because other
+    triangles would intersect.
 
     Args:
         surface: triangles, (F, 3) integers, or a :class:`stiv.Surface`.

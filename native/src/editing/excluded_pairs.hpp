@@ -19,10 +19,10 @@ struct IntersectionCount {
 };
 
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
-/// bodies that touch, which may intersect no deeper than rounding. Nor may the given pairs of one body whose parts only
-/// touch: those of two connected components, or of one, without a pair that intersects deeper at the start. An event belongs to every pair of a triangle at its
-/// first side and one at its second. It is ignored only if each of these pairs is excluded, so that all other pairs
-/// stay guarded. (mathematics.md, "Excluded pairs")
+/// bodies that touch, which may intersect no deeper than rounding. The same holds for given pairs of one body whose
+/// parts only touch: those of two connected components, or of one, without a pair that is deeper at the start. An event
+/// belongs to every pair of a triangle at its first side and one at its second. It is ignored only if each of these
+/// pairs is excluded, so that all other pairs stay guarded. (mathematics.md, "Excluded pairs")
 class ExcludedPairs {
  public:
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives

@@ -77,7 +77,8 @@ std::optional<Event> PairTest::event(EventKind kind, const Candidate& candidate,
   const PairMotion motion = motion_of(vertices_.data(), proximity.reference, v);
   const std::optional<Contact> contact = contact_of(kind, motion, proximity, latest);
   if (!contact) return std::nullopt;
-  return Event{kind, false, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->clearance};
+  return Event{
+      kind, false, v, contact->time, contact->weights, contact->normal, contact->start_distance, contact->clearance};
 }
 
 }  // namespace stiv
