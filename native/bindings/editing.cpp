@@ -264,6 +264,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("weights", &EditOptions::weights)
       .def_readwrite("weight_axes", &EditOptions::weight_axes)
       .def_readwrite("exclude", &EditOptions::excluded)
+      .def_readwrite("parts_may_cut", &EditOptions::parts_may_cut)
       .def_readwrite("overlapping", &EditOptions::overlapping)
       .def_readwrite("constraints", &EditOptions::constraints)
       .def_readwrite("solver", &EditOptions::solver)

@@ -119,6 +119,9 @@ class EditOptions(SharedOptions):
     weight_axes: ArrayLike | None = field(default=None, metadata={"convert": as_weight_axes})
     #: (k, 2) pairs of triangles that may intersect, or "intersecting": all that do at the start; see EditSession
     exclude: ArrayLike | str | None = field(default=None, metadata={"convert": _excluded_pairs})
+    #: whether excluded pairs of parts of a body that only touch at the start may intersect to any depth, such as those
+    #: along open seams; otherwise no deeper than rounding
+    parts_may_cut: bool = False
     #: pairs of bodies, by name or number, that may overlap, but no more than at the start. They can part in any
     #: direction, and are guarded once they are apart. "intersecting": all pairs of bodies that do at the start
     overlapping: Sequence[tuple[str | int, str | int]] | str = field(default=(), metadata={"convert": _body_pairs})

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drags that cannot start: the popups and their buttons. And an object that intersects itself."""
+"""Drags that cannot start: the popups and their buttons. And starts that touch, or intersect themselves."""
 
 from __future__ import annotations
 
+import bmesh
 import bpy
 import scenes
-from playing import FURTHEST, box_x, click, expect_free, expect_near, prepared, start
+from mathutils import Matrix, Vector
+from playing import FURTHEST, box, box_x, click, expect_free, expect_near, prepared, start
 from scenes import WALL_FACE
 from simulation import Steps, Window
 
@@ -103,6 +105,60 @@ def start_suzanne(window: Window) -> Steps:
     assert max(vertex.co.x for vertex in vertices) > 0.9
 
 
+def start_touching(window: Window) -> Steps:
+    """A box that touches the wall slides along it without a question, and leaves it."""
+
+    def build() -> None:
+        scenes.add_box().location.x = FURTHEST
+
+    yield from prepared(window, build, "Box")
+    before = box_x()
+    yield from start(window)
+    yield from window.glide(window.pixel((1.0, 1.0, 0.0)))
+    expect_near(box_x(), before, 1e-4, "the box beside the wall")
+    expect_near(box().location.y, 1.0, 0.05, "the box that slides")
+    window.picture("start_touching")
+    yield from window.glide(window.pixel((-1.0, 1.0, 0.0)))
+    assert box_x() < before - 0.8, box_x()
+    window.key("ESC")
+    yield from window.until(lambda: not window.dragging(), "the end of the transform")
+    assert box_x() == before, (box_x(), before)
+    yield from start(window)
+    yield from window.glide(window.pixel((1.0, 1.0, 0.0)))
+    yield from click(window)
+    expect_near(box().location.y, 1.0, 0.05, "the box that has slid")
+    expect_free(window)
+    yield from window.undo()
+    assert box_x() == before, (box_x(), before)
+
+
+def start_touching_parts(window: Window) -> Steps:
+    """A block of a mesh that touches another one slides along it, and does not pass into it."""
+
+    def build() -> None:
+        def blocks(content: bmesh.types.BMesh) -> None:
+            for x in (-1.0, 0.0):
+                bmesh.ops.create_cube(content, size=1.0, matrix=Matrix.Translation((x, 0.0, 0.0)))
+
+        scenes.add_mesh("Blocks", blocks)
+
+    yield from prepared(window, build, "Blocks", "EDIT")
+    content = bmesh.from_edit_mesh(bpy.context.object.data)
+    for vertex in content.verts:
+        vertex.select_set(vertex.index >= 8)
+    content.select_flush_mode()
+    bmesh.update_edit_mesh(bpy.context.object.data)
+    yield from window.settle()
+    yield from start(window)
+    yield from window.glide(window.pixel((-0.4, 0.6, 0.0)))
+    window.picture("start_touching_parts")
+    yield from click(window)
+    content = bmesh.from_edit_mesh(bpy.context.object.data)
+    moved = [Vector(vertex.co) for vertex in content.verts if vertex.index >= 8]
+    expect_near(min(each.x for each in moved), -0.5, 1e-4, "the block beside the other one")
+    assert max(each.y for each in moved) > 0.9, "it has not slid"
+
+
 def start_refused_modifier(window: Window) -> Steps:
     """A box whose Triangulate modifier flips quads below a subdivision: the popup fixes them, and the drag works."""
 
@@ -132,6 +188,8 @@ INTERSECTING_STARTS = {
         start_popup_of_moving_mouse,
         start_popup_let_pass,
         start_suzanne,
+        start_touching,
+        start_touching_parts,
         start_refused_modifier,
     )
 }

@@ -40,9 +40,10 @@ bool has_deviation_tests(const EditContext& context) {
 /// @param rows of the scene
 ExcludedPairs excluded_pairs(const EditContext& context, const Controls& start, SceneRows& rows, Execution& execution) {
   const IndexPairs& given = context.options().excluded;
-  if (given.empty()) return {context.shared_surface(), {}, Positions(), context.least_separation(), execution};
+  if (given.empty()) return {context.shared_surface(), {}, true, Positions(), context.least_separation(), execution};
   const Positions surface = context.surface_at(start, execution);
-  return {context.shared_surface(), given, rows.with_rest(surface), context.least_separation(), execution};
+  return {context.shared_surface(),   given,    context.options().parts_may_cut, rows.with_rest(surface),
+          context.least_separation(), execution};
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::arra
 
 }  // namespace
 
-ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs,
+ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, bool parts_may_cut,
                              const PositionsView& start, double least, Execution& execution)
     : surface_(std::move(surface)), least_(least) {
   const IndexPairs given = checked(pairs, static_cast<Index>(surface_->triangles().rows()));
@@ -99,13 +99,13 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
   bodies_ = bodies_of(given);
-  take_given(given, start);
+  take_given(given, parts_may_cut, start);
   add_touching(start);
   find_others_that_touch(start, execution);
 }
 
 /// Divides the given pairs by their depth, and by whether their parts only touch.
-void ExcludedPairs::take_given(const IndexPairs& pairs, const PositionsView& start) {
+void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
   const std::vector<Index> component = surface_->connected_components();
   const auto parts = [&](const std::pair<Index, Index>& pair) -> std::pair<Index, Index> {
@@ -121,7 +121,8 @@ void ExcludedPairs::take_given(const IndexPairs& pairs, const PositionsView& sta
   }
   sort_unique(cutting);
   const auto is_flush = [&](const std::pair<Index, Index>& pair) {
-    return surface_->body_of(surface_->triangles()(pair.first, 0)) ==
+    return !parts_may_cut &&
+           surface_->body_of(surface_->triangles()(pair.first, 0)) ==
                surface_->body_of(surface_->triangles()(pair.second, 0)) &&
            !std::binary_search(cutting.begin(), cutting.end(), parts(pair));
   };

@@ -28,11 +28,12 @@ class ExcludedPairs {
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
   /// storing. Where a curve of intersection passes an edge so closely, it cannot be kept on its side of the edge. Only
   /// neighbors of the triangles of a given pair may intersect deeper. No pair that intersects at the start is added.
+  /// @param parts_may_cut no parts count as only touching
   /// @param start of all vertices, as stored: rounding decides whether faces that touch intersect, so positions that
   /// are moved to another origin would count as others
   /// @throws InputError: a triangle out of range, or a triangle with itself
-  ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, const PositionsView& start,
-                double least, Execution& execution);
+  ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, bool parts_may_cut,
+                const PositionsView& start, double least, Execution& execution);
 
   bool empty() const { return all_.empty(); }
   const IndexPairs& pairs() const { return all_; }  ///< sorted, with the smaller index first
@@ -62,7 +63,7 @@ class ExcludedPairs {
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
-  void take_given(const IndexPairs& pairs, const PositionsView& start);
+  void take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start);
   void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);

@@ -46,6 +46,7 @@ struct EditOptions {
   /// bodies, and the area of an open body inside a closed one, never exceed those of the start. (mathematics.md,
   /// "Excluded pairs")
   IndexPairs excluded;
+  bool parts_may_cut = false;  ///< excluded pairs of parts that only touch have no limit, such as those at open seams
   /// Pairs of bodies that may overlap, but no more than at the start: they can part in any direction. While a pair
   /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")
   std::vector<std::pair<Index, Index>> overlapping;

@@ -71,6 +71,7 @@ def session_options(
         weights=stacked_weights([each.weights for each in control_sets]),
         weight_axes=axes_of_all(control_sets),
         exclude=exclude,
+        parts_may_cut=any(each.posed is not None for each in control_sets),  # skin folds at open seams
         overlapping=excluded_bodies(settings.excluded, assembly),
         storage=frames,
     )

@@ -156,6 +156,7 @@ def _make_core(
         weights=weights,
         weight_axes=_weight_axes(scene),
         exclude=find_excluded_triangles(excluded, assembly, assembly.positions, settings.threads),
+        parts_may_cut=True,  # values of shape keys tear seams
         overlapping=excluded_bodies(excluded, assembly),
     )
     core: stiv.EditSession = yield Call(

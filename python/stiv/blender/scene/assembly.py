@@ -2,6 +2,7 @@
 """All visible meshes as one surface, with lookup from its triangles to objects and faces."""
 
 from bisect import bisect_right
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -224,15 +225,19 @@ def _ignored_bodies(
     ignored: Sequence[tuple[str, str]],
     untested: frozenset[tuple[Part, Part]],
 ) -> list[tuple[int, int]]:
-    pairs = set()
-    for (first, kind, here, roots, part), a in bodies.items():
-        for (second, other, there, grown, part_of_other), b in bodies.items():
-            if b < a:
-                continue
-            rigid = kind == other == "rigid" and any(first in names and second in names for names in together)
-            rooted = first in grown or second in roots
-            both = (first, here, part), (second, there, part_of_other)
-            folds = both in untested or both[::-1] in untested
-            if rigid or rooted or folds or not here & there or (first, second) in ignored or (second, first) in ignored:
-                pairs.add((a, b))
-    return sorted(pairs)
+    """Pairs of bodies that are not tested, ascending. There can be thousands of bodies, so each rule lists its own."""
+    by_name, by_part = defaultdict[str, list[int]](list), defaultdict[Part, list[int]](list)
+    shown = defaultdict[frozenset[str], list[int]](list)
+    for (name, _, here, _, part), number in bodies.items():
+        for listed in (by_name[name], by_part[name, here, part], shown[here]):
+            listed.append(number)
+    rigid = {number: name for (name, kind, *_), number in bodies.items() if kind == "rigid"}
+    groups = [[number for number, name in rigid.items() if name in names] for names in together]
+    both = [
+        *((group, group) for group in groups),
+        *((by_name[root], [number]) for (*_, roots, _), number in bodies.items() for root in roots),
+        *((by_part[first], by_part[second]) for first, second in untested),
+        *((by_name[first], by_name[second]) for first, second in ignored),
+        *((some, others) for here, some in shown.items() for there, others in shown.items() if not here & there),
+    ]
+    return sorted({(min(a, b), max(a, b)) for first, second in both for a in first for b in second})
