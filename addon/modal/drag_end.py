@@ -30,7 +30,7 @@ class DragEnded(RuntimeError):  # noqa: N818 (it is not an error)
     """An event outside the drag ended it."""
 
 
-def restore_after_error(edit: Edit, error: Exception) -> None:
+def restore_after_error(edit: Edit, error: BaseException) -> None:
     """Restore the start; if that fails too because the scene is gone, `error` gets a note."""
     try:
         edit.restore()

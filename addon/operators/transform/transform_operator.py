@@ -233,11 +233,15 @@ def apply_values(
     transform: Transform,
     motion_of: Callable[[Transform, Frame], stiv_blender.Motion],
 ) -> stiv_blender.Steps[tuple[stiv_blender.BlenderEdit, stiv_blender.EditResult]]:
-    """Steps that solve for a transform from the present scene, as a script would; nothing is written."""
+    """Steps that solve for a transform from the present scene, as a script would; the result is not written."""
     frame = read_frame(context)
     edit = yield from begin_edit(context, request)
-    report_start(operator, context, edit)
-    result = yield from _solve_values(edit, motion_of(transform, frame), transform, frame)
+    try:
+        report_start(operator, context, edit)
+        result = yield from _solve_values(edit, motion_of(transform, frame), transform, frame)
+    except BaseException as error:  # the start may have parted objects that touched
+        restore_after_error(edit, error)
+        raise
     return edit, result
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import bpy
@@ -32,6 +33,7 @@ from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
+from stiv.blender.edit.touching_start import Parting, start_apart_steps
 from stiv.blender.edit.typed_values import apply_increments
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -55,9 +57,13 @@ class BlenderEdit:
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
     """
 
-    def __init__(self, snapshot: EditSnapshot, solver: EditSolver, late_seams: LateSeams) -> None:
-        """solver: started from the snapshot. late_seams: begin the edit again where a seam opens."""
-        self._late_seams = late_seams
+    def __init__(
+        self, snapshot: EditSnapshot, solver: EditSolver, late_seams: LateSeams, parting: Parting | None = None
+    ) -> None:
+        """solver: started from the snapshot. late_seams: begin the edit again where a seam opens. parting: made before
+        the snapshot.
+        """
+        self._late_seams, self._parting = late_seams, parting
         self._begin_from(snapshot, solver)
 
     def _begin_from(self, snapshot: EditSnapshot, solver: EditSolver) -> None:
@@ -77,7 +83,10 @@ class BlenderEdit:
 
     @classmethod
     def begin(cls, context: bpy.types.Context, settings: EditSettings, kind: str) -> BlenderEdit:
-        """Read the scene for an edit of this kind ("move", "rotate", "scale"); changes nothing.
+        """Read the scene for an edit of this kind ("move", "rotate", "scale").
+
+        Changes nothing, except that selected objects which only touch others are parted from them, by about the
+        rounding of their coordinates. `restore` restores that too.
 
         In large scenes, objects that certainly stay as they are become obstacles beside the surface.
         Raises InputError naming object, element and ways out, StartIntersectsError if the start intersects.
@@ -93,7 +102,7 @@ class BlenderEdit:
         obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
         if not obstacles:
             forget_static_meshes()
-        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles)
+        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles, parts=True)
 
     @classmethod
     def begin_with(
@@ -120,16 +129,20 @@ class BlenderEdit:
         participants: Sequence[Participant],
         adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
         obstacles: Collection[str] = (),
+        parts: bool = False,
     ) -> Steps[BlenderEdit]:
-        """Steps of `begin_with`."""
+        """Steps of `begin_with`. parts: as `begin`, they part objects that only touch others."""
 
         def read(torn: Sequence[Floats]) -> Steps[EditSnapshot]:
             chosen = [replace(each, torn=tuple(torn)) if each.role == "bones" else each for each in participants]
             return take_snapshot_steps(bpy.context, settings, kind, chosen, adapt, obstacles)
 
         with kept_twins():
-            reading = take_snapshot_steps(context, settings, kind, participants, adapt, obstacles)
-            snapshot, solver = yield from start_steps(reading)
+            reading = partial(take_snapshot_steps, context, settings, kind, participants, adapt, obstacles)
+            if parts:
+                snapshot, solver, parting = yield from start_apart_steps(reading)
+                return cls(snapshot, solver, LateSeams(read), parting)
+            snapshot, solver = yield from start_steps(reading())
         return cls(snapshot, solver, LateSeams(read))
 
     @property
@@ -467,7 +480,7 @@ class BlenderEdit:
     def start_shown(self) -> Iterator[None]:
         """Blender shows the start inside, and the present state again afterwards. Raises SceneChangedError."""
         present = self.controls
-        restore_controls(self.control_sets)
+        self._show_start()
         try:
             yield
         finally:
@@ -492,7 +505,7 @@ class BlenderEdit:
 
         Collisions are off again if the edit began with them off.
         """
-        restore_controls(self.control_sets)
+        self._show_start()
         self._goal.controls = self._start
         if self._unguarded is not None or not self._began_free:
             self._unguarded = self._start
@@ -500,3 +513,9 @@ class BlenderEdit:
             self._solver.restart_from(self._start, self.goal)
         else:
             self._solver.discard_session()
+
+    def _show_start(self) -> None:
+        """Restore what was there before the edit, which may differ from its start by a parting."""
+        restore_controls(self.control_sets)
+        if self._parting is not None:
+            self._parting.restore()

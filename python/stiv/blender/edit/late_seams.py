@@ -10,7 +10,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import restore_controls
 from stiv.blender.edit.snapshot import EditSnapshot
-from stiv.blender.edit.solver import EditSolver
+from stiv.blender.edit.solver import EditSolver, start_solver_steps
 from stiv.blender.scene.arrays import Floats
 from stiv.task import Steps
 
@@ -21,9 +21,7 @@ ReadApart = Callable[[Sequence[Floats]], Steps[EditSnapshot]]
 def start_steps(reading: Steps[EditSnapshot]) -> Steps[tuple[EditSnapshot, EditSolver]]:
     """Steps that read the scene with given ones, and start a solver from there."""
     snapshot = yield from reading
-    solver = EditSolver(snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings)
-    yield from solver.start()
-    return snapshot, solver
+    return snapshot, (yield from start_solver_steps(snapshot))
 
 
 class LateSeams:

@@ -117,6 +117,7 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     """A start that intersects.
 
     Attributes:
+        assembly: with the triangles of the session.
         pairs: intersecting pairs of triangles, (k, 2).
         objects: pairs of objects with the number of their intersecting faces; not of an object with itself.
         short: a message about the first pair of objects; "" without any.
@@ -125,14 +126,14 @@ class ObjectsIntersectError(stiv.StartIntersectsError):
     def __init__(self, error: stiv.StartIntersectsError, assembly: Assembly) -> None:
         super().__init__(str(error) if len(error.pairs) else loose_text(assembly) or str(error))
         self.pairs: Indices = error.pairs
-        self._assembly = assembly
+        self.assembly = assembly
         if intersects_only_in_render(assembly, error):
             self.add_note("only the render intersects; set Guard to Viewport to leave it out")
 
     @cached_property
     def objects(self) -> tuple[tuple[str, str, int], ...]:
         """See the attributes. Most starts that intersect begin again, with exclusions, and need no message."""
-        return intersecting_faces(self._assembly, self.pairs)
+        return intersecting_faces(self.assembly, self.pairs)
 
     @cached_property
     def short(self) -> str:

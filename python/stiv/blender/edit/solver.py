@@ -17,6 +17,7 @@ from stiv.blender.edit.sessions import (
     session_options,
     stack_controls,
 )
+from stiv.blender.edit.snapshot import EditSnapshot
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -233,3 +234,10 @@ class EditSolver:
         """Names of the objects that the goal moves."""
         moving = (each for each in self.control_sets if each.rule.moves)
         return {assembly.meshes[index].owner.name for each in moving for index in each.surfaces}
+
+
+def start_solver_steps(snapshot: EditSnapshot) -> Steps[EditSolver]:
+    """Steps that start a solver from a snapshot. Raise InputError, StartIntersectsError."""
+    solver = EditSolver(snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings)
+    yield from solver.start()
+    return solver

@@ -13,7 +13,7 @@ from stiv.blender.controls.editable import check_unkeyed
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.scene.arrays import Floats, translation_matrix
-from stiv.blender.scene.assembly import Assembly, assemble
+from stiv.blender.scene.assembly import Assembly, assemble_against_others
 from stiv.blender.scene.elements import FacePairs
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
@@ -59,13 +59,11 @@ def separate_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[
         check_unkeyed(each.reference.find())
     edit = yield from BlenderEdit.begin_with_steps(context, free, "move", participants)
     moving = edit.moving
-    surfaces = _against_others(edit.assembly, moving, settings)
+    surfaces, is_moving = assemble_against_others(edit.assembly.meshes, moving, settings.ignored_pairs)
     pairs = find_face_pairs(surfaces, surfaces.positions, settings.threads)
     if not pairs:
         return SeparationReport(tuple(sorted(moving)), (), np.zeros(3))
     others = _others(pairs, moving)
-    is_moving = np.zeros(len(surfaces.positions), bool)
-    is_moving[surfaces.vertices_of(_indices(surfaces, moving))] = True
     gap = settings.separation or 1e-4 * float(np.ptp(surfaces.positions[is_moving], axis=0).max())
     translation = yield from find_separation_steps(
         surfaces.surface, surfaces.positions, is_moving, gap, settings.threads, time_left(end)
@@ -93,16 +91,6 @@ def _write(
         if not any(any(context.scene.objects[each].lock_location) for each in edit.moving):
             raise InputError(f"{name}: its shape changes as it moves; apply its modifiers")
         raise InputError(f"{name}: still intersects {other}; clear its locks")
-
-
-def _against_others(assembly: Assembly, moving: frozenset[str], settings: EditSettings) -> Assembly:
-    """The assembly in which only pairs of a moving and a resting object meet."""
-    mobility = ["rigid" if mesh.owner.name in moving else "fixed" for mesh in assembly.meshes]
-    return assemble(assembly.meshes, mobility, (moving,), settings.ignored_pairs)
-
-
-def _indices(assembly: Assembly, names: frozenset[str]) -> list[int]:
-    return [index for index, mesh in enumerate(assembly.meshes) if mesh.owner.name in names]
 
 
 def _others(pairs: FacePairs, moving: frozenset[str]) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from itertools import accumulate
 import numpy as np
 
 import stiv
-from stiv.blender.scene.arrays import Floats, Indices, Singles
+from stiv.blender.scene.arrays import Flags, Floats, Indices, Singles
 from stiv.blender.scene.elements import Element, FacePairs
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.shared_surface import make_surface
@@ -157,6 +157,18 @@ def unmerged_triangles(meshes: Sequence[VisibleMesh]) -> Indices:
 def mesh_seams(local: Singles, triangles: Indices) -> Seams | None:
     """Seams of a mesh in its own frame, from positions (n, 3) and triangles (f, 3)."""
     return find_seams(local, triangles, ROUNDING)
+
+
+def assemble_against_others(
+    meshes: Sequence[VisibleMesh], moving: frozenset[str], ignored: Sequence[tuple[str, str]] = ()
+) -> tuple[Assembly, Flags]:
+    """Assemble meshes so that only pairs of a moving and a resting object meet; also flags the moving vertices, (N,).
+
+    moving: names of the objects that move together. ignored: pairs of names that are not tested.
+    """
+    moves = [mesh.owner.name in moving for mesh in meshes]
+    assembly = assemble(meshes, ["rigid" if each else "fixed" for each in moves], (moving,), ignored)
+    return assembly, np.repeat(np.array(moves, np.bool_), np.diff(assembly.starts))
 
 
 def assemble_with_seams(meshes: Sequence[VisibleMesh], ignored: Sequence[tuple[str, str]] = ()) -> Assembly:

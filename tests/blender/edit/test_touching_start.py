@@ -1,0 +1,385 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Objects that touch others at the start: an edit parts them by rounding, and goes on as from a clear start."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import numpy as np
+import pytest
+from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift, snapshot, stretch, turn
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from stiv import StartIntersectsError
+from stiv.blender import BlenderEdit, EditSettings, Motion, ObjectsIntersectError, check_scene, separate
+from stiv.blender.controls.directions import FreeDirections
+from stiv.blender.edit import touching_start
+from stiv.blender.scene import obstacle_choice
+from stiv.task import Task
+
+ROUNDING = 1e-5
+SLIDE = EditSettings()
+
+
+def begin(kind: str = "move", chosen: EditSettings = SLIDE) -> BlenderEdit:
+    return BlenderEdit.begin(bpy.context, chosen, kind)
+
+
+def cube_on_floor(**properties: Any) -> Any:
+    """The default cube, exactly on a floor; selected."""
+    add_grid("Floor", 4, 8.0)
+    cube = add_cube("Cube", (0, 0, 1), **properties)
+    select(cube)
+    return cube
+
+
+def is_clear() -> bool:
+    return check_scene(bpy.context).pairs == ()
+
+
+def applied(matrix: Any, kind: str = "move", chosen: EditSettings = SLIDE) -> BlenderEdit:
+    """An edit of a typed value, written; nothing intersects any more."""
+    edit = begin(kind, chosen)
+    edit.apply(matrix)
+    assert edit.write().passed
+    assert is_clear()
+    return edit
+
+
+def refused(kind: str = "move", chosen: EditSettings = SLIDE) -> None:
+    """An edit cannot begin, and changes nothing."""
+    before = snapshot()
+    with pytest.raises(StartIntersectsError, match="already intersects"):
+        begin(kind, chosen)
+    assert snapshot() == before
+
+
+@pytest.mark.parametrize(
+    ("way", "end"),
+    [
+        ((1, 0, 0), (1, 0, 1)),
+        ((-2, 3, 0), (-2, 3, 1)),
+        ((0, 0, 1), (0, 0, 2)),
+        ((0, 0, -1), (0, 0, 1)),
+        ((2, 0, -1), (2, 0, 1)),
+        ((0.5, 0.5, 0.5), (0.5, 0.5, 1.5)),
+    ],
+)
+@pytest.mark.parametrize("drags", [True, False], ids=["drag", "typed"])
+def test_a_cube_on_the_floor_slides_rises_and_stays_above(way: Any, end: Any, drags: bool) -> None:
+    cube = cube_on_floor()
+    assert not is_clear()
+    edit = begin()
+    if drags:
+        for fraction in np.linspace(0.1, 1, 10):
+            edit.drag(shift(*(fraction * np.array(way))))
+            assert edit.write().passed and is_clear()
+        edit.settle()
+    else:
+        edit.apply(shift(*way))
+    assert edit.write().passed and is_clear()
+    assert tuple(cube.location) == pytest.approx(end, abs=ROUNDING)
+    assert evaluated(cube)[:, 2].min() > 0
+
+
+def test_only_the_height_of_a_cube_that_slides_changes_and_that_by_rounding() -> None:
+    cube = cube_on_floor(rotation_euler=(0, 0, 0.3))
+    applied(shift(1.5))
+    assert (cube.location.x, cube.location.y) == (1.5, 0.0)
+    assert 1 < cube.location.z < 1 + ROUNDING
+    assert cube.rotation_euler.z == np.float32(0.3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "motion"),
+    [("move", shift(1, 0, -1)), ("rotate", turn(0.4, "Z", (0, 0, 1))), ("scale", stretch(0.5, (0, 0, 1)))],
+)
+def test_every_kind_begins_and_restores_to_the_last_bit(kind: str, motion: Any) -> None:
+    cube_on_floor(rotation_euler=(0, 0, 0.7))
+    before = snapshot()
+    edit = begin(kind)
+    edit.apply(motion)
+    assert edit.write().passed and is_clear()
+    assert snapshot() != before
+    edit.restore()
+    assert snapshot() == before
+    edit.apply(motion)
+    assert edit.write().passed and is_clear()
+    with edit.start_shown():
+        assert snapshot() == before
+    assert is_clear()
+    edit.restore()
+    assert snapshot() == before
+
+
+def test_an_axis_keeps_the_others() -> None:
+    cube = cube_on_floor()
+    edit = begin()
+    edit.drag(Motion(shift(1), free=FreeDirections.line(np.array([1.0, 0, 0]))))
+    assert edit.write().passed and is_clear()
+    assert tuple(cube.location) == pytest.approx((1, 0, 1), abs=ROUNDING)
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=15)
+@given(st.integers(0, 2**32 - 1))
+def test_crates_flush_with_each_other_in_any_direction(seed: int) -> None:
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    chance = np.random.default_rng(seed)
+    angles, place, (x, y) = chance.uniform(-3, 3, 3), chance.uniform(-5, 5, 3), chance.uniform(-1.9, 1.9, 2)
+    rest = add_cube("Rest", place, rotation_euler=angles)
+    across = np.array(rest.matrix_world)[:3, :3]
+    crate = add_cube("Crate", place + across @ (x, y, 2), rotation_euler=angles)
+    select(crate)
+    start = np.array(crate.location)
+    edit = begin()
+    way = across @ (1, -1, -0.5)
+    edit.apply(shift(*way))
+    assert edit.write().passed and is_clear()
+    slid = across.T @ (np.array(crate.location) - start)
+    assert slid == pytest.approx((1, -1, 0), abs=2 * ROUNDING)
+
+
+def stack() -> tuple[Any, Any, Any]:
+    """A floor, and two crates of the same size on each other."""
+    return add_grid("Floor", 4, 8.0), add_cube("Lower", (0, 0, 1)), add_cube("Upper", (0, 0, 3))
+
+
+def test_the_upper_one_of_two_crates_slides() -> None:
+    _, lower, upper = stack()
+    select(upper)
+    edit = applied(shift(1, 0.5, -0.2))
+    assert tuple(upper.location) == pytest.approx((1, 0.5, 3), abs=ROUNDING)
+    assert tuple(lower.location) == (0, 0, 1)
+    assert edit.start_notes == ()
+
+
+def test_a_stack_slides_together_and_stays_as_it_is() -> None:
+    _, lower, upper = stack()
+    select(lower, upper)
+    edit = begin()
+    edit.apply(shift(1, 0, 0.5))
+    assert edit.write().passed
+    assert np.array(upper.location) - lower.location == pytest.approx((0, 0, 2), abs=1e-6)
+    assert tuple(lower.location) == pytest.approx((1, 0, 1.5), abs=ROUNDING)
+
+
+def test_resting_objects_that_touch_each_other_need_nothing() -> None:
+    stack()
+    free = add_cube("Free", (5, 0, 2))
+    select(free)
+    edit = begin()
+    assert tuple(free.location) == (5, 0, 2)
+    edit.apply(shift(-2.5))
+    assert edit.write().passed
+    assert free.location.x == pytest.approx(2.5, abs=ROUNDING)
+
+
+def held_between_walls() -> Any:
+    add_cube("Left", (-2, 0, 0))
+    add_cube("Right", (2, 0, 0))
+    return add_cube("Cube", (0, 0.3, 0))
+
+
+def held_in_a_stack() -> Any:
+    return stack()[1]
+
+
+def cutting() -> Any:
+    add_grid("Floor", 4, 8.0)
+    return add_cube("Cube", (0, 0, 1 - 1e-3))
+
+
+def cutting_beside_contact() -> Any:
+    add_grid("Floor", 4, 8.0)
+    add_cube("Wall", (1.9, 0.3, 1.2))
+    return add_cube("Cube", (0, 0, 1))
+
+
+def duplicate() -> Any:
+    add_cube("Cube")
+    return add_cube("Copy")
+
+
+def keyed() -> Any:
+    cube = cube_on_floor()
+    cube.keyframe_insert("location", frame=1)
+    return cube
+
+
+def locked() -> Any:
+    return cube_on_floor(lock_location=(False, False, True))
+
+
+def wired() -> Any:
+    """Blender evaluates its shape anew where it is."""
+    cube = cube_on_floor()
+    other = add("Mirror", None, (3, 0, 0))
+    add_modifier(cube, "MIRROR", mirror_object=other)
+    return cube
+
+
+HELD = [held_between_walls, held_in_a_stack, cutting, cutting_beside_contact, duplicate, keyed, locked, wired]
+
+
+@pytest.mark.parametrize("build", HELD)
+def test_what_rounding_does_not_part_is_refused_as_before(build: Callable[[], Any]) -> None:
+    select(build())
+    refused()
+
+
+def test_shapes_that_deform_are_refused_as_before() -> None:
+    cube = cube_on_floor()
+    refused("move", EditSettings(object_response="deform"))
+    edit_mode(cube)
+    refused()
+
+
+def test_without_collisions_nothing_is_parted() -> None:
+    cube = cube_on_floor()
+    edit = begin("move", EditSettings(interference=False))
+    edit.drag(shift(1))
+    edit.write()
+    assert tuple(cube.location) == (1, 0, 1)
+
+
+def test_collisions_off_and_on_within_an_edit() -> None:
+    cube = cube_on_floor()
+    before = snapshot()
+    edit = begin()
+    edit.set_interference(False)
+    edit.drag(shift(0, 0, -0.5))
+    edit.write()
+    assert "Floor" in edit.set_interference(True)
+    edit.drag(shift(1))
+    assert edit.write().passed and is_clear()
+    assert tuple(cube.location) == pytest.approx((1, 0, 1), abs=ROUNDING)
+    edit.restore()
+    assert snapshot() == before
+
+
+def test_locks_that_leave_the_way_free_stay_exact() -> None:
+    cube = cube_on_floor(lock_location=(False, True, False))
+    cube.location.y = np.float32(0.1)
+    select(cube)
+    applied(shift(1, 1))
+    assert tuple(cube.location) == pytest.approx((1, 0.1, 1), abs=ROUNDING)
+    assert cube.location.y == np.float32(0.1)
+
+
+def test_children_and_lights_move_along() -> None:
+    parent = add("Parent", None, (100, 0, 0.25))
+    add_grid("Floor", 4, 8.0)
+    cube = add_cube("Cube", (-100, 0, 0.75), parent=parent)
+    lamp = add("Lamp", bpy.data.lights.new("Lamp", "POINT"), (0, 0, 4))
+    select(parent, lamp)
+    before = snapshot()
+    edit = applied(shift(2))
+    assert evaluated(cube).mean(axis=0) == pytest.approx((2, 0, 1), abs=1e-4)
+    assert tuple(lamp.location) == pytest.approx((2, 0, 4), abs=1e-4)
+    edit.restore()
+    assert snapshot() == before
+
+
+def test_pairs_that_may_pass_stay() -> None:
+    cube_on_floor()
+    wall = add_cube("Wall", (1.2, 0.3, 1.5))
+    passing = EditSettings(ignored_pairs=(("Cube", "Wall"),))
+    edit = begin("move", passing)
+    edit.apply(shift(0.5))
+    assert edit.write().passed
+    assert check_scene(bpy.context, EditSettings(ignored_pairs=(("Cube", "Wall"), ("Floor", "Wall")))).pairs == ()
+    assert tuple(wall.location) == pytest.approx((1.2, 0.3, 1.5))
+
+
+def test_beside_obstacles_of_a_large_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 0)
+    cube = cube_on_floor()
+    edit = applied(shift(1, 0, -1))
+    assert edit.assembly.obstacles
+    assert tuple(cube.location) == pytest.approx((1, 0, 1), abs=ROUNDING)
+
+
+def test_cutting_obstacles_of_a_large_scene_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 0)
+    select(cutting())
+    refused()
+
+
+def test_a_second_start_that_fails_restores(monkeypatch: pytest.MonkeyPatch) -> None:
+    cube_on_floor()
+    before, start, starts = snapshot(), touching_start.start_solver_steps, []
+
+    def failing(parted: Any) -> Any:
+        starts.append(snapshot())
+        if len(starts) == 2:
+            raise MemoryError
+        return start(parted)
+
+    monkeypatch.setattr(touching_start, "start_solver_steps", failing)
+    with pytest.raises(MemoryError):
+        begin()
+    assert len(starts) == 2 and starts[0] == before != starts[1]
+    assert snapshot() == before
+
+
+def test_a_parting_that_leaves_contact_restores_and_raises_the_first_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    cube_on_floor()
+    monkeypatch.setattr(touching_start, "find_parting", lambda *_: np.array([0, 0, -1e-6]))
+    before = snapshot()
+    with pytest.raises(ObjectsIntersectError) as found:
+        begin()
+    assert snapshot() == before
+    assert len(found.value.pairs) == 18
+
+
+@pytest.mark.parametrize("end", [Task.close, Task.abandon, Task.leave])
+def test_a_start_that_is_cancelled_restores(end: Callable[[Task[Any]], None]) -> None:
+    """Whatever step it has reached."""
+    cube_on_floor()
+    before, ended, reached = snapshot(), 0, set()
+    while not ended:
+        task = Task(BlenderEdit.begin_steps(bpy.context, SLIDE, "move"))
+        for _ in range(len(reached) + 1):
+            ended = task._step() is False and task._done
+            if ended:
+                break
+        reached.add((len(reached), snapshot() != before))
+        if ended:
+            ended[0].restore()
+            break
+        end(task)
+        assert snapshot() == before
+    assert snapshot() == before
+    assert any(changed for _, changed in reached)
+
+
+def test_equal_starts_have_equal_digests_and_share_their_results() -> None:
+    cube = cube_on_floor()
+    first = begin()
+    first.apply(shift(1, 0, -1))
+    assert first.write().passed
+    end, controls, digest = tuple(cube.location), first.controls, first.start_digest
+    first.restore()
+    first.finish()
+    again = begin()
+    assert again.start_digest == digest
+    assert again.resume_from(controls)
+    assert again.write().passed
+    assert tuple(cube.location) == end
+
+
+def test_the_next_edit_shares_the_session() -> None:
+    cube_on_floor()
+    first = applied(shift(1, 0, -1))
+    session = first._solver.session
+    first.finish()
+    second = begin()
+    assert second._solver.session is session
+    assert second._parting is None
+
+
+def test_separate_keeps_its_gap() -> None:
+    cube = cube_on_floor()
+    separate(bpy.context, EditSettings(separation=0.01))
+    assert cube.location.z > 1.009
