@@ -80,3 +80,12 @@ def test_a_time_limit_leaves_the_shortest_clear_way_so_far(looks: int, monkeypat
     else:
         assert clear_after(surface, q, moving, found)
         assert np.linalg.norm(found) >= np.linalg.norm(whole)
+
+
+@pytest.mark.parametrize("offset", [(2.0, 0.0, 0.0), (2.0, 2.0, 0.0), (0.0, 0.3, -2.0)])
+def test_boxes_that_only_touch_part_by_little_more_than_the_gap(offset: tuple[float, float, float]) -> None:
+    cube = triangulated(box(2))
+    surface, q, moving = two(cube, cube.moved(offset))
+    found = find_separation(surface, q, moving, separation=0.01)
+    assert 0.01 <= np.linalg.norm(found) <= 0.0101
+    assert clear_after(surface, q, moving, found)

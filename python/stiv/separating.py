@@ -16,6 +16,7 @@ _DIRECTIONS = 96  # on the sphere
 _BISECTIONS = 14  # of a distance: to a 16,000th
 _TILTS = (0.4, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005)  # of the best direction, refined; radians
 _AROUND = 6  # directions of each tilt
+_SHORTEST = 2.0**-40  # of the extent; bodies that only touch part by any distance
 _WORTHWHILE = 1 - 2.0**-10  # of the best distance; a smaller gain is not sought
 
 
@@ -69,6 +70,7 @@ class _Search:
     def __init__(self, surface: Surface, q: Floats, moving: NDArray[np.bool_], threads: int, end: float) -> None:
         self._surface, self._q, self._moving, self._end = surface, q, moving, end
         self._test = IntersectionTest(surface, threads)
+        self._shortest = _SHORTEST * float(np.ptp(q, axis=0).max(initial=0.0))
         bodies = np.unique(surface.vertex_body[surface.triangles[:, 0]], return_index=True)[1]
         self._seeds = surface.triangles[bodies, 0]  # a vertex of each body
 
@@ -127,7 +129,7 @@ class _Search:
         bound = self._bound(direction) * (1 + 1e-9)
         clear = bound if best is None else min(bound, float(np.linalg.norm(best)) * _WORTHWHILE)
         yield None
-        if clear <= 0 or not self.is_clear(clear * direction):
+        if clear <= self._shortest or not self.is_clear(clear * direction):
             return best
         intersecting = 0.0
         for _ in range(_BISECTIONS):

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -27,6 +27,7 @@ from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
 
 GAP = 8  # between parted objects, in roundings of what moves
+KEPT = 0.5  # of the gap: their minimum distance, so that they keep the gap
 
 Started = tuple[EditSnapshot, EditSolver, "Parting | None"]
 
@@ -37,13 +38,29 @@ class Parting:
 
     Attributes:
         control_sets: of these objects; their start is the one before.
+        touched: pairs of names of objects that touched.
+        gap: distance by which they are parted.
     """
 
     control_sets: tuple[ControlSet, ...]
+    touched: tuple[tuple[str, str], ...]
+    gap: float
 
     def restore(self) -> None:
         """Restore the objects exactly. Raises SceneChangedError if one was removed."""
         restore_controls(self.control_sets)
+
+    def adapted(self, snapshot: EditSnapshot) -> EditSnapshot:
+        """A snapshot of the parted objects that keeps their gap, unless a minimum distance is chosen.
+
+        Otherwise they would rise by the automatic one on their way, where other faces come near.
+        """
+        settings = snapshot.settings
+        if settings.separation > 0:
+            return snapshot
+        chosen = {frozenset(names) for *names, _ in settings.pair_separations}
+        rows = [(*names, KEPT * self.gap) for names in self.touched if frozenset(names) not in chosen]
+        return replace(snapshot, settings=replace(settings, pair_separations=(*settings.pair_separations, *rows)))
 
 
 def start_apart_steps(read: Callable[[], Steps[EditSnapshot]]) -> Steps[Started]:
@@ -60,7 +77,7 @@ def start_apart_steps(read: Callable[[], Steps[EditSnapshot]]) -> Steps[Started]
             raise
         refusal = error
     try:
-        parted = yield from read()
+        parted = parting.adapted((yield from read()))
         return parted, (yield from start_solver_steps(parted)), parting
     except BaseException as error:  # also where a caller ends the steps
         with suppress(SceneChangedError):
@@ -94,7 +111,8 @@ def _part_steps(snapshot: EditSnapshot, error: ObjectsIntersectError) -> Steps[P
     for each in sets:
         each.writer.write(each.controls + [shift, np.zeros(3)])
     bpy.context.view_layer.update()
-    return Parting(sets)
+    touched = tuple((first, second) for first, second, _ in error.objects)
+    return Parting(sets, touched, gap)
 
 
 def _may_part(control_set: ControlSet) -> bool:
