@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
@@ -45,6 +46,7 @@ def find_parting(
     moving: _Flags,
     gap: float,
     free: ArrayLike | None = None,
+    near: Sequence[tuple[int, int]] = (),
     threads: int = 0,
 ) -> Floats | None:
     """Return the least translation found, (3,), of the moving vertices after which no triangles intersect.
@@ -54,16 +56,17 @@ def find_parting(
     moving     (N,) true for the vertices that move
     gap        distance by which those that touch are parted
     free       (3, 3) projection to the directions that the translation may have; None: all
+    near       pairs of triangles, (k, 2), that do not touch but are nearer than the gap, and are parted too
 
     The result is exact in that nothing intersects there. Returns None if something cuts deeper than rounding, or
     no translation of that size parts everything.
     """
     test = IntersectionTest(surface, threads)
     allowed = np.eye(3) if free is None else np.asarray(free, np.float64)
-    pairs, shift = np.empty((0, 2), np.int32), np.zeros(3)
-    for _ in range(_ROUNDS):
+    pairs, shift = np.array(near, np.int32).reshape(-1, 2), np.zeros(3)
+    for number in range(_ROUNDS):
         found = test.find(vertices + np.where(moving[:, None], shift, 0.0))
-        if len(found) == 0:
+        if len(found) == 0 and (number > 0 or len(pairs) == 0):
             return shift
         pairs = np.concatenate([pairs, found])
         contacts = _Contacts(vertices[surface.triangles], moving[surface.triangles[:, 0]], pairs, gap)

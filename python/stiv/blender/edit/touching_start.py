@@ -1,35 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Starts an edit of objects that touch others, such as a crate on the floor: it parts them first, by rounding."""
+"""Starts an edit of objects in contact with others, such as a crate on the floor: those that touch are parted first, by
+rounding.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import bpy
 import numpy as np
 
+import stiv
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.directions import ALL_FREE, FreeDirections
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.placement_goals import PlacementGoal
 from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.edit.sessions import ObjectsIntersectError, restore_controls
-from stiv.blender.edit.snapshot import EditSnapshot
+from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices
 from stiv.blender.edit.solver import EditSolver, start_solver_steps
-from stiv.blender.excluded_faces import Exclusions
-from stiv.blender.scene.assembly import assemble_against_others
+from stiv.blender.scene.arrays import Flags, extents
+from stiv.blender.scene.assembly import Assembly, assemble_against_others
 from stiv.blender.scene.elements import PART
+from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.scene.references import SceneChangedError
 from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
 
 GAP = 8  # between parted objects, in roundings of what moves
-KEPT = 0.5  # of the gap: their minimum distance, so that they keep the gap
+NEAR = 4  # gaps within which objects are in contact
+KEPT = 0.5  # of the gap: the minimum distance of objects in contact, the least that single precision can keep
+TOUCHING = 0.4  # of the gap: less than edits keep; so near are only objects that touched before rounding
+MOST_NEAR = 8  # pairs of objects in contact that are sought
 
-Started = tuple[EditSnapshot, EditSolver, "Parting | None"]
+Started = tuple[EditSnapshot, EditSolver]
+Pairs = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -38,87 +47,192 @@ class Parting:
 
     Attributes:
         control_sets: of these objects; their start is the one before.
-        touched: pairs of names of objects that touched.
-        gap: distance by which they are parted.
     """
 
     control_sets: tuple[ControlSet, ...]
-    touched: tuple[tuple[str, str], ...]
-    gap: float
 
     def restore(self) -> None:
         """Restore the objects exactly. Raises SceneChangedError if one was removed."""
         restore_controls(self.control_sets)
 
-    def adapted(self, snapshot: EditSnapshot) -> EditSnapshot:
-        """A snapshot of the parted objects that keeps their gap, unless a minimum distance is chosen.
 
-        Otherwise they would rise by the automatic one on their way, where other faces come near.
-        """
-        settings = snapshot.settings
-        if settings.separation > 0:
-            return snapshot
-        chosen = {frozenset(names) for *names, _ in settings.pair_separations}
-        rows = [(*names, KEPT * self.gap) for names in self.touched if frozenset(names) not in chosen]
-        return replace(snapshot, settings=replace(settings, pair_separations=(*settings.pair_separations, *rows)))
-
-
-def start_apart_steps(read: Callable[[], Steps[EditSnapshot]]) -> Steps[Started]:
+def start_apart_steps(read: Callable[[], Steps[EditSnapshot]]) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
     """Steps that read the scene and start a solver, after parting moving objects that only touch others.
 
     read: makes steps that read the scene. Raise InputError and StartIntersectsError, with nothing changed.
     """
     snapshot = yield from read()
+    movers, refusal = _Movers.of(snapshot), None
     try:
-        return snapshot, (yield from start_solver_steps(snapshot)), None
+        clear = snapshot, (yield from start_solver_steps(snapshot))
     except ObjectsIntersectError as error:
-        parting = yield from _part_steps(snapshot, error)
-        if parting is None:
+        if movers is None or not _only_touch(error, movers.names):
             raise
-        refusal = error
+        parting, refusal = (yield from _part_touching_steps(error.assembly, movers)), error
+    else:
+        contacts = yield from _contacts_steps(*clear, movers)
+        parting = yield from _part_contacts_steps(snapshot.assembly, movers, contacts)
+        if parting is None:
+            return *(yield from _keep_contacts_steps(*clear, movers, contacts)), None
+    if parting is not None:
+        try:
+            return *(yield from _start_parted_steps(read, parting)), parting
+        except ObjectsIntersectError:
+            if refusal is None:
+                return *clear, None
+    assert refusal is not None
+    raise refusal
+
+
+def _start_parted_steps(read: Callable[[], Steps[EditSnapshot]], parting: Parting) -> Steps[Started]:
+    """Steps that start from the parted objects; if they do not succeed, or a caller ends them, they restore these."""
     try:
-        parted = parting.adapted((yield from read()))
-        return parted, (yield from start_solver_steps(parted)), parting
-    except BaseException as error:  # also where a caller ends the steps
+        snapshot = yield from read()
+        solver, movers = (yield from start_solver_steps(snapshot)), _Movers.of(snapshot)
+        contacts = yield from _contacts_steps(snapshot, solver, movers)
+        return (yield from _keep_contacts_steps(snapshot, solver, movers, contacts))
+    except BaseException:
         with suppress(SceneChangedError):
             parting.restore()
-        if isinstance(error, ObjectsIntersectError):
-            raise refusal from None
         raise
 
 
-def _part_steps(snapshot: EditSnapshot, error: ObjectsIntersectError) -> Steps[Parting | None]:
-    """Steps that translate the moving objects together until they touch no others; None, with nothing changed, if they
-    cut deeper, or no translation of the size of rounding parts them.
+def _part_touching_steps(assembly: Assembly, movers: _Movers) -> Steps[Parting | None]:
+    """Steps that part the moving objects from those that they touch; None, with nothing changed, if they cannot."""
+    yield None
+    surfaces, is_moving = assemble_against_others(_near_meshes(assembly, movers), movers.names, movers.ignored)
+    yield None
+    return _part(surfaces, is_moving, movers)
+
+
+def _part_contacts_steps(
+    assembly: Assembly, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
+) -> Steps[Parting | None]:
+    """Steps that part the moving objects from those that they would touch, were it not for rounding."""
+    if movers is None or not contacts or contacts[0].distance >= TOUCHING * movers.gap:
+        return None
+    yield None
+    surfaces, is_moving = assemble_against_others(_near_meshes(assembly, movers), movers.names, movers.ignored)
+    return _part(surfaces, is_moving, movers, [each.triangles for each in contacts])
+
+
+def _part(
+    surfaces: Assembly, is_moving: Flags, movers: _Movers, pairs: Sequence[tuple[int, int]] = ()
+) -> Parting | None:
+    """Translate the moving objects together by the least distance that parts all that they touch.
+
+    None, with nothing changed, if something cuts deeper than rounding, or no translation of that size parts it. pairs:
+    of triangles that are nearer than the gap.
     """
-    sets = tuple(each for each in snapshot.control_sets if each.rule.moves)
-    if not all(map(_may_part, sets)):
+    free = _free_directions(movers.sets).along(np.eye(3))
+    shift = find_parting(surfaces.surface, surfaces.positions, is_moving, movers.gap, free, pairs)
+    if shift is None or movers.are_keyed:
         return None
-    meshes, settings = snapshot.assembly.meshes, snapshot.settings
-    moving = frozenset(meshes[index].owner.name for each in sets for index in each.surfaces)
-    if not _only_touch(error, moving):
-        return None
-    yield None
-    near = near_assembly(error.assembly, error.assembly.positions).assembly
-    ignored = [*settings.ignored_pairs, *_excluded_objects(settings.excluded)]
-    surfaces, is_moving = assemble_against_others(near.meshes, moving, ignored)
-    yield None
-    gap = GAP * max(rounding_of(surfaces.positions[is_moving]), *map(_rounding_of_places, sets))
-    free = _free_directions(sets).along(np.eye(3))
-    shift = find_parting(surfaces.surface, surfaces.positions, is_moving, gap, free, settings.threads)
-    if shift is None:
-        return None
-    for each in sets:
+    for each in movers.sets:
         each.writer.write(each.controls + [shift, np.zeros(3)])
     bpy.context.view_layer.update()
-    touched = tuple((first, second) for first, second, _ in error.objects)
-    return Parting(sets, touched, gap)
+    return Parting(movers.sets)
 
 
-def _may_part(control_set: ControlSet) -> bool:
-    """Do objects move rigidly, wherever they are, and stay where they are moved to?"""
-    objects = [reference.find() for reference in _writer(control_set).references] if control_set.role == "rigid" else []
-    return bool(objects) and control_set.placed is None and not any(map(is_keyed, objects))
+def _contacts_steps(
+    snapshot: EditSnapshot, solver: EditSolver, movers: _Movers | None
+) -> Steps[list[stiv.LeastDistance]]:
+    """Steps that find the contacts of moving objects, unless a minimum distance is chosen."""
+    if movers is None or not movers.are_alone or snapshot.settings.separation > 0 or not solver.has_session:
+        return []
+    if not movers.are_near(solver.session.least_distance()):
+        return []
+    yield None
+    return _find_contacts(snapshot.assembly, movers)
+
+
+def _keep_contacts_steps(
+    snapshot: EditSnapshot, solver: EditSolver, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
+) -> Steps[Started]:
+    """Steps that start again with small minimum distances of objects in contact, if there are any.
+
+    Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others come
+    near on the way, objects would rise, or get stuck.
+    """
+    settings = snapshot.settings
+    chosen = {frozenset(names) for *names, _ in settings.pair_separations}
+    pairs = [each.bodies for each in contacts if frozenset(each.bodies) not in chosen]
+    if movers is None or not pairs:
+        return snapshot, solver
+    distances = (*settings.pair_separations, *((*names, KEPT * movers.gap) for names in pairs))
+    adapted = replace(snapshot, settings=replace(settings, pair_separations=distances))
+    return adapted, (yield from start_solver_steps(adapted))
+
+
+@dataclass(frozen=True)
+class _Movers:
+    """Objects that move rigidly.
+
+    Attributes:
+        sets: their control sets.
+        names: of all objects whose surface moves.
+        gap: the distance by which they are parted from what they touch.
+        ignored: pairs of names that may intersect.
+        are_alone: does nothing yield by deformation?
+    """
+
+    sets: tuple[ControlSet, ...]
+    names: frozenset[str]
+    gap: float
+    ignored: Pairs
+    are_alone: bool
+
+    @classmethod
+    def of(cls, snapshot: EditSnapshot) -> _Movers | None:
+        """Those of a snapshot; None if anything else moves, or if modifiers shape them where they are."""
+        sets = tuple(each for each in snapshot.control_sets if each.rule.moves)
+        if any(each.role != "rigid" or each.placed is not None for each in sets):
+            return None
+        assembly, settings = snapshot.assembly, snapshot.settings
+        points = assembly.positions[find_moving_vertices(assembly, snapshot.control_sets)]
+        gap = GAP * max(rounding_of(points), *map(_rounding_of_places, sets))
+        names = frozenset(assembly.meshes[index].owner.name for each in sets for index in each.surfaces)
+        passing = [(a.partition(PART)[0], b.partition(PART)[0]) for a, b in settings.excluded.objects]
+        are_alone = all(each.role == "rigid" for each in snapshot.control_sets)
+        return cls(sets, names, gap, (*settings.ignored_pairs, *passing), are_alone)
+
+    @property
+    def are_keyed(self) -> bool:
+        """Would the next frame reset any of them?"""
+        return any(is_keyed(each.find()) for control_set in self.sets for each in _writer(control_set).references)
+
+    def are_near(self, least: stiv.LeastDistance | None) -> bool:
+        """Is a distance that of objects in contact?"""
+        return least is not None and least.distance <= NEAR * self.gap
+
+
+def _find_contacts(assembly: Assembly, movers: _Movers) -> list[stiv.LeastDistance]:
+    """The least distances of moving objects and others in contact with them, in ascending order."""
+    found: list[stiv.LeastDistance] = []
+    meshes = _near_meshes(assembly, movers)
+    while len(found) < MOST_NEAR:
+        surfaces, _ = assemble_against_others(meshes, movers.names, [*movers.ignored, *(each.bodies for each in found)])
+        least = stiv.least_distance(surfaces.positions, surfaces.surface)
+        if least is None or not movers.are_near(least):
+            break
+        found.append(least)
+    return found
+
+
+def _near_meshes(assembly: Assembly, movers: _Movers) -> list[VisibleMesh]:
+    """The moving meshes, and those whose boxes meet the box around them."""
+    near = near_assembly(assembly, assembly.positions).assembly
+    starts, positions, meshes = near.starts, near.positions, near.meshes
+    boxes = [extents(positions[a:b]) if b > a else None for a, b in pairwise(starts.tolist())]
+    moves = [mesh.owner.name in movers.names for mesh in meshes]
+    own = [box for box, each in zip(boxes, moves, strict=True) if each and box is not None]
+    low = np.min([box[0] for box in own], axis=0) - NEAR * movers.gap
+    high = np.max([box[1] for box in own], axis=0) + NEAR * movers.gap
+    return [
+        mesh
+        for mesh, box, each in zip(meshes, boxes, moves, strict=True)
+        if each or (box is not None and (box[0] <= high).all() and (low <= box[1]).all())
+    ]
 
 
 def _writer(control_set: ControlSet) -> PlacementWriter:
@@ -136,11 +250,6 @@ def _only_touch(error: ObjectsIntersectError, moving: frozenset[str]) -> bool:
         return False
     corners = assembly.positions[assembly.surface.triangles[error.pairs[(error.pairs < count).all(axis=1)]]]
     return are_touching(corners[:, 0], corners[:, 1])
-
-
-def _excluded_objects(excluded: Exclusions) -> list[tuple[str, str]]:
-    """Names of the pairs of objects with excluded faces, which may overlap."""
-    return [(a.partition(PART)[0], b.partition(PART)[0]) for a, b in excluded.objects]
 
 
 def _rounding_of_places(control_set: ControlSet) -> float:
