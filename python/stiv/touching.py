@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiv.arrays import Floats, Indices
-from stiv.intersections import IntersectionTest
+from stiv.intersections import IntersectionTest, intersection_depths
 from stiv.surface import Surface
 
 _Flags = NDArray[np.bool_]
 
 DEEPEST = 16  # of triangles that only touch, in roundings of their corners
 
-_CHUNK = 4096  # pairs of triangles whose axes are compared at once
+_FIRST = 256  # pairs that are tested before all others; where surfaces cut each other, one of these mostly does
+_SAMPLE = 4096  # pairs whose axes are compared
 _MOST_AXES = 64  # directions that separate pairs, the most frequent ones
 _MOST_CHOSEN = 8  # of these that a translation combines
 _ROUNDS = 4  # of translations, after each of which other triangles may touch
@@ -32,10 +33,12 @@ def rounding_of(points: Floats) -> float:
 
 def are_touching(first: Floats, second: Floats) -> bool:
     """Return whether triangles, (k, 3, 3) each, cut no deeper than rounding into those of the same row."""
-    tolerance = _tolerance(first, second)
-    for begin in range(0, len(first), _CHUNK):
-        a, b = first[begin : begin + _CHUNK], second[begin : begin + _CHUNK]
-        if _overlaps_along(_axes(a, b), a, b).min(axis=1).max() > tolerance:
+    tolerance, end = _tolerance(first, second), len(first)
+    for begin, stop in ((0, min(_FIRST, end)), (_FIRST, end)):
+        points = np.concatenate([first[begin:stop], second[begin:stop]]).reshape(-1, 3)
+        triangles = np.arange(len(points), dtype=np.int32).reshape(-1, 3)
+        pairs = np.arange(len(triangles), dtype=np.int32).reshape(2, -1).T
+        if intersection_depths(points, triangles, pairs).max(initial=0.0) > tolerance:
             return False
     return True
 
@@ -92,7 +95,7 @@ class _Contacts:
         """The least translation found that parts all pairs; None without one. allowed: projection, (3, 3)."""
         if not are_touching(self._moving, self._others):
             return None
-        step = -(-len(self._moving) // _CHUNK)
+        step = -(-len(self._moving) // _SAMPLE)
         a, b = self._moving[::step], self._others[::step]
         axes = self._separating(a, b)
         needed = _beyond(axes, a, b) + self._gap  # of a translation along each axis, for each pair

@@ -22,11 +22,10 @@ from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.edit.sessions import ObjectsIntersectError, restore_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices
 from stiv.blender.edit.solver import EditSolver, start_solver_steps
-from stiv.blender.scene.arrays import Flags, extents
+from stiv.blender.scene.arrays import Flags, Floats, Indices, extents, transform_points
 from stiv.blender.scene.assembly import Assembly, assemble_against_others
 from stiv.blender.scene.elements import PART
 from stiv.blender.scene.evaluated_scene import VisibleMesh
-from stiv.blender.scene.near_assembly import near_assembly
 from stiv.blender.scene.references import SceneChangedError
 from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
@@ -140,10 +139,12 @@ def _contacts_steps(
     """Steps that find the contacts of moving objects, unless a minimum distance is chosen."""
     if movers is None or not movers.are_alone or snapshot.settings.separation > 0 or not solver.has_session:
         return []
-    if not movers.are_near(solver.session.least_distance()):
+    assembly = snapshot.assembly
+    is_alone = len(_near_meshes(assembly, movers)) == len(movers.meshes)
+    if is_alone or not movers.are_near(solver.session.least_distance()):
         return []
     yield None
-    return _find_contacts(snapshot.assembly, movers)
+    return _find_contacts(assembly, movers)
 
 
 def _keep_contacts_steps(
@@ -170,13 +171,15 @@ class _Movers:
 
     Attributes:
         sets: their control sets.
-        names: of all objects whose surface moves.
+        meshes: numbers of the meshes that move.
+        names: of their objects.
         gap: the distance by which they are parted from what they touch.
         ignored: pairs of names that may intersect.
         are_alone: does nothing yield by deformation?
     """
 
     sets: tuple[ControlSet, ...]
+    meshes: tuple[int, ...]
     names: frozenset[str]
     gap: float
     ignored: Pairs
@@ -190,11 +193,14 @@ class _Movers:
             return None
         assembly, settings = snapshot.assembly, snapshot.settings
         points = assembly.positions[find_moving_vertices(assembly, snapshot.control_sets)]
+        if len(points) == 0:
+            return None
         gap = GAP * max(rounding_of(points), *map(_rounding_of_places, sets))
-        names = frozenset(assembly.meshes[index].owner.name for each in sets for index in each.surfaces)
+        meshes = tuple(index for each in sets for index in each.surfaces)
+        names = frozenset(assembly.meshes[index].owner.name for index in meshes)
         passing = [(a.partition(PART)[0], b.partition(PART)[0]) for a, b in settings.excluded.objects]
         are_alone = all(each.role == "rigid" for each in snapshot.control_sets)
-        return cls(sets, names, gap, (*settings.ignored_pairs, *passing), are_alone)
+        return cls(sets, meshes, names, gap, (*settings.ignored_pairs, *passing), are_alone)
 
     @property
     def are_keyed(self) -> bool:
@@ -220,19 +226,19 @@ def _find_contacts(assembly: Assembly, movers: _Movers) -> list[stiv.LeastDistan
 
 
 def _near_meshes(assembly: Assembly, movers: _Movers) -> list[VisibleMesh]:
-    """The moving meshes, and those whose boxes meet the box around them."""
-    near = near_assembly(assembly, assembly.positions).assembly
-    starts, positions, meshes = near.starts, near.positions, near.meshes
-    boxes = [extents(positions[a:b]) if b > a else None for a, b in pairwise(starts.tolist())]
-    moves = [mesh.owner.name in movers.names for mesh in meshes]
-    own = [box for box, each in zip(boxes, moves, strict=True) if each and box is not None]
+    """The moving meshes, others whose boxes meet the box around them, and what obstacles have there."""
+    boxes = [extents(assembly.positions[a:b]) if b > a else None for a, b in pairwise(assembly.starts.tolist())]
+    own = [box for box in (boxes[index] for index in movers.meshes) if box is not None]
     low = np.min([box[0] for box in own], axis=0) - NEAR * movers.gap
     high = np.max([box[1] for box in own], axis=0) + NEAR * movers.gap
-    return [
+    near = [
         mesh
-        for mesh, box, each in zip(meshes, boxes, moves, strict=True)
-        if each or (box is not None and (box[0] <= high).all() and (low <= box[1]).all())
+        for mesh, box in zip(assembly.meshes, boxes, strict=True)
+        if mesh.owner.name in movers.names
+        or (box is not None and (box[0] <= high).all() and (low <= box[1]).all())
     ]
+    found = [(static, static.obstacle.triangles_near(low, high)) for static in assembly.obstacles]
+    return [*near, *(static.cropped(rows) for static, rows in found if len(rows))]
 
 
 def _writer(control_set: ControlSet) -> PlacementWriter:
@@ -241,15 +247,27 @@ def _writer(control_set: ControlSet) -> PlacementWriter:
 
 
 def _only_touch(error: ObjectsIntersectError, moving: frozenset[str]) -> bool:
-    """Is each pair one of a moving and a resting object that only touch? Those with obstacles are tested later."""
+    """Is each pair one of a moving and a resting object that only touch?"""
     assembly, count = error.assembly, len(error.assembly.surface.triangles)
     is_moving = np.zeros(len(assembly.positions), np.bool_)
     is_moving[assembly.vertices_of([k for k, mesh in enumerate(assembly.meshes) if mesh.owner.name in moving])] = True
     moves = np.append(is_moving[assembly.surface.triangles[:, 0]], False)[np.minimum(error.pairs, count)]
     if len(moves) == 0 or (moves[:, 0] == moves[:, 1]).any():
         return False
-    corners = assembly.positions[assembly.surface.triangles[error.pairs[(error.pairs < count).all(axis=1)]]]
-    return are_touching(corners[:, 0], corners[:, 1])
+    return are_touching(*(_corners(assembly, error.pairs[:, side]) for side in (0, 1)))
+
+
+def _corners(assembly: Assembly, triangles: Indices) -> Floats:
+    """Corners of triangles of the surface or an obstacle, (n, 3, 3)."""
+    corners, first = np.empty((len(triangles), 3, 3)), len(assembly.surface.triangles)
+    own = triangles < first
+    corners[own] = assembly.positions[assembly.surface.triangles[triangles[own]]]
+    for static in assembly.obstacles:
+        own = (triangles >= first) & (triangles < first + static.obstacle.triangle_count)
+        points = static.shape.local[static.shape.triangles[triangles[own] - first]].astype(np.float64)
+        corners[own] = transform_points(static.matrix, points.reshape(-1, 3)).reshape(-1, 3, 3)
+        first += static.obstacle.triangle_count
+    return corners
 
 
 def _rounding_of_places(control_set: ControlSet) -> float:
