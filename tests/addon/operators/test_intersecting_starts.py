@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that intersect at the start: Separate, Let These Pass, and exclusions that do not glue."""
+"""Objects that intersect at the start: Separate, Let These Pass, exclusions that do not glue, and those that touch."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,20 @@ import pytest
 
 bpy = pytest.importorskip("bpy")
 blender = pytest.importorskip("stiv.blender")
+
+from stiv.task import Task  # noqa: E402
+from stiv_addon.modal.drag_calls import DragCalls  # noqa: E402
+from stiv_addon.modal.drag_end import Progress  # noqa: E402
+from stiv_addon.modal.drag_loop import DragLoop  # noqa: E402
+from stiv_addon.modal.event import Event  # noqa: E402
+from stiv_addon.modal.pointer import Pointer  # noqa: E402
+from stiv_addon.modal.request import Request  # noqa: E402
+from stiv_addon.modal.state import State  # noqa: E402
+from stiv_addon.operators.transform.constraint import Constraint  # noqa: E402
+from stiv_addon.operators.transform.transform_operator import apply_values, begin_edit, make_motion  # noqa: E402
+from stiv_addon.scene.frame import read_frame  # noqa: E402
+from stiv_addon.transform.translation import Translation  # noqa: E402
+
 frame_check = pytest.importorskip("stiv.blender.verify.frame_check")
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -121,3 +136,125 @@ def test_a_pair_that_may_pass_is_not_tested_and_named_by_checks_even_in_a_file(t
     assert look.findings and look.notes == ()
     with pytest.raises(RuntimeError, match="Pair 0 does not exist"):
         bpy.ops.stiv.let_pass_remove(index=0)
+
+
+def cube_on_floor() -> Any:
+    """The default cube, exactly on a plane; selected."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    bpy.ops.mesh.primitive_plane_add(size=20.0)
+    bpy.ops.mesh.primitive_cube_add(location=(0.0, 0.0, 1.0))
+    return bpy.context.active_object
+
+
+@pytest.mark.parametrize(
+    ("operator", "values", "end"),
+    [
+        ("move", {"value": (2.0, 0.0, 0.0)}, (2.0, 0.0, 1.0)),
+        ("move", {"value": (2.0, 1.0, -1.0)}, (2.0, 1.0, 1.0)),
+        ("move", {"value": (0.0, 0.0, -1.0)}, (0.0, 0.0, 1.0)),
+        ("move", {"value": (3.0, 0.0, -1.0), "constraint_axis": (True, False, False)}, (3.0, 0.0, 1.0)),
+        ("rotate", {"angle": 0.5}, (0.0, 0.0, 1.0)),
+        ("scale", {"value": (0.5, 0.5, 0.5)}, (0.0, 0.0, 1.0)),
+    ],
+)
+def test_what_touches_is_edited_in_one_undo_step(operator: str, values: dict, end: tuple[float, ...]) -> None:
+    cube_on_floor()
+    bpy.ops.ed.undo_push(message="start")
+    assert getattr(bpy.ops.stiv, operator)("EXEC_DEFAULT", True, **values) == {"FINISHED"}
+    assert blender.check_scene(bpy.context).pairs == ()
+    first = tuple(bpy.data.objects["Cube"].location)
+    assert first == pytest.approx(end, abs=1e-5)
+    bpy.ops.ed.undo()
+    assert tuple(bpy.data.objects["Cube"].location) == (0.0, 0.0, 1.0)
+    assert getattr(bpy.ops.stiv, operator)("EXEC_DEFAULT", True, **values) == {"FINISHED"}
+    assert tuple(bpy.data.objects["Cube"].location) == first
+
+
+def test_edits_one_after_the_other_stay_on_the_floor() -> None:
+    cube = cube_on_floor()
+    for way in ((3.0, 0.0, 0.0), (-2.0, 4.0, -1.0), (0.0, -6.0, 0.0), (5.0, 1.0, -0.1)):
+        bpy.ops.stiv.move(value=way)
+        assert cube.location.z == pytest.approx(1.0, abs=1e-5)
+    assert tuple(cube.location) == pytest.approx((6.0, -1.0, 1.0), abs=1e-4)
+    assert blender.check_scene(bpy.context).pairs == ()
+
+
+def test_an_edit_that_fails_after_its_start_restores_what_touched(monkeypatch: pytest.MonkeyPatch) -> None:
+    cube = cube_on_floor()
+
+    def failing(edit: Any, motion: Any, path: Any = None) -> Any:
+        assert cube.location.z > 1.0
+        raise MemoryError
+        yield
+
+    monkeypatch.setattr(blender.BlenderEdit, "apply_steps", failing)
+    with pytest.raises(RuntimeError, match="Unexpected error"):
+        bpy.ops.stiv.move(value=(1.0, 0.0, 0.0))
+    assert tuple(cube.location) == (0.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize("end", [Task.close, Task.abandon, Task.leave])
+def test_applied_values_restore_what_touched_when_they_are_left(end: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As when Esc ends typed values of a drag, which are solved in jobs."""
+    cube = cube_on_floor()
+
+    def endless(edit: Any, motion: Any, path: Any = None) -> Any:
+        while True:
+            yield None
+
+    monkeypatch.setattr(blender.BlenderEdit, "apply_steps", endless)
+    transform = Translation(np.array((1.0, 0.0, 0.0)))
+    request = Request("move", "selected", True, "slide")
+
+    def motion_of(transform: Any, frame: Any) -> Any:
+        return make_motion(transform, frame, None, Constraint())
+
+    reporter = SimpleNamespace(report=lambda kind, text: None)
+    task = Task(apply_values(reporter, bpy.context, request, transform, motion_of))
+    for _ in range(50):
+        assert not task.advance(0.1)
+    assert cube.location.z > 1.0
+    end(task)
+    assert tuple(cube.location) == (0.0, 0.0, 1.0)
+
+
+def drag_of(places: list[tuple[float, float]]) -> DragLoop:
+    """A drag of the selection to places in the plane y = 0, one after the other; at rest there."""
+
+    def transform_of(state: State) -> Translation:
+        x, z = state.pointer.effective
+        return Translation(np.array((x, 0.0, z)))
+
+    def motion_of(transform: Any, state: State) -> Any:
+        return make_motion(transform, read_frame(bpy.context), None, Constraint())
+
+    calls = DragCalls(
+        lambda request: begin_edit(bpy.context, request, 0.5), transform_of, motion_of, lambda *_: None, Task
+    )
+    drag = DragLoop(calls, State(Pointer.at((0.0, 0.0)), Request("move", "selected", True, "slide")))
+    for place in places:
+        drag.handle(Event("MOUSEMOVE", "NOTHING", place))
+        drag.tick()
+        while not drag.at_rest:
+            drag.tick()
+    return drag
+
+
+@pytest.mark.parametrize("places", [[], [(1.0, 0.0)], [(1.0, 0.0), (2.0, -1.0)], [(0.5, 2.0), (1.0, -3.0)]])
+def test_a_cancelled_drag_restores_what_touched(places: list[tuple[float, float]]) -> None:
+    cube = cube_on_floor()
+    drag = drag_of(places)
+    drag.handle(Event("ESC", "PRESS", (0.0, 0.0)))
+    assert drag.progress is Progress.CANCELLED and drag.error is None
+    assert tuple(cube.location) == (0.0, 0.0, 1.0)
+
+
+def test_a_confirmed_drag_slides_what_touched() -> None:
+    cube = cube_on_floor()
+    drag = drag_of([(1.0, 0.0), (2.0, -1.0), (3.0, -1.0)])
+    drag.handle(Event("LEFTMOUSE", "PRESS", (3.0, -1.0)))
+    while not drag.progress.ended:
+        drag.tick()
+    assert drag.progress is Progress.FINISHED
+    assert tuple(cube.location) == pytest.approx((3.0, 0.0, 1.0), abs=1e-5)
+    assert blender.check_scene(bpy.context).pairs == ()
