@@ -129,8 +129,8 @@ class _Contacts:
     def _ranks(self, axes: Floats, a: Floats, b: Floats) -> list[tuple[float, ...]]:
         """Which of two directions is likelier the way out where faces lie in one plane; the greater ones first.
 
-        Away from the faces of others, and with the bulk of what moves; something flat, such as a carpet, with its own
-        front. Then upward.
+        Away from the faces of others, and with the bulk of the moving bodies; something flat, such as a carpet, with its
+        own front. Then upward.
         """
         bulk = axes @ self._toward_body
         fronts = axes @ (_mean_normal(a) + _mean_normal(b))
@@ -185,7 +185,7 @@ def _least_beyond(normals: Floats, heights: Floats) -> Floats | None:
     best: Floats | None = None
     rows = (list(each) for size in (1, 2, 3) for each in combinations(range(len(heights)), size))
     for chosen in rows:
-        vector = np.linalg.lstsq(normals[chosen], heights[chosen], rcond=_SAME)[0]
+        vector: Floats = np.linalg.lstsq(normals[chosen], heights[chosen], rcond=_SAME)[0].astype(np.float64)
         reaches = bool((normals @ vector >= heights * (1 - _SAME)).all())
         if reaches and (best is None or np.linalg.norm(vector) < np.linalg.norm(best)):
             best = vector

@@ -170,7 +170,7 @@ def test_what_touches_is_edited_in_one_undo_step(operator: str, values: dict, en
     assert tuple(bpy.data.objects["Cube"].location) == first
 
 
-def test_edits_one_after_the_other_stay_on_the_floor() -> None:
+def test_consecutive_edits_stay_on_the_floor() -> None:
     cube = cube_on_floor()
     for way in ((3.0, 0.0, 0.0), (-2.0, 4.0, -1.0), (0.0, -6.0, 0.0), (5.0, 1.0, -0.1)):
         bpy.ops.stiv.move(value=way)
@@ -219,7 +219,7 @@ def test_applied_values_restore_what_touched_when_they_are_left(end: Any, monkey
 
 
 def drag_of(places: list[tuple[float, float]]) -> DragLoop:
-    """A drag of the selection to places in the plane y = 0, one after the other; at rest there."""
+    """A drag of the selection to consecutive places in the plane y = 0; at rest there."""
 
     def transform_of(state: State) -> Translation:
         x, z = state.pointer.effective

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Objects that touch others at the start: an edit parts them by rounding, and goes on as from a clear start."""
+"""Objects that touch others at the start: an edit parts them by rounding, and continues as from a clear start."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,7 +7,20 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, add_modifier, edit_mode, evaluated, select, shift, shown_triangles, snapshot, stretch, turn
+from building import (
+    add,
+    add_cube,
+    add_grid,
+    add_modifier,
+    edit_mode,
+    evaluated,
+    select,
+    shift,
+    shown_triangles,
+    snapshot,
+    stretch,
+    turn,
+)
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -229,7 +242,7 @@ def locked() -> Any:
 
 
 def mirrored() -> Any:
-    """Blender evaluates its shape anew where it is."""
+    """Its shape depends on its place."""
     cube = cube_on_floor()
     other = add("Mirror", None, (3, 0, 0))
     add_modifier(cube, "MIRROR", mirror_object=other)
@@ -396,7 +409,7 @@ def test_the_next_edit_starts_clear() -> None:
 
 
 def test_a_chosen_minimum_distance_is_approached() -> None:
-    """Only the automatic one gives way to the gap."""
+    """Only the automatic one yields to the gap."""
     cube = cube_on_floor(8)
     applied(shift(3), chosen=EditSettings(separation=0.01))
     assert cube.location.z == pytest.approx(1.01, abs=0.0111)

@@ -515,7 +515,7 @@ class BlenderEdit:
             self._solver.discard_session()
 
     def _show_start(self) -> None:
-        """Restore what was there before the edit, which may differ from its start by a parting."""
+        """Restore the scene from before the edit, which may differ from its start by a parting."""
         restore_controls(self.control_sets)
         if self._parting is not None:
             self._parting.restore()

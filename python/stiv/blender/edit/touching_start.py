@@ -30,7 +30,7 @@ from stiv.blender.scene.references import SceneChangedError
 from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
 
-GAP = 8  # between parted objects, in roundings of what moves
+GAP = 8  # between parted objects, in roundings of the moving objects
 NEAR = 4  # gaps within which objects are in contact
 KEPT = 0.5  # of the gap: the minimum distance of objects in contact, the least that single precision can keep
 TOUCHING = 0.4  # of the gap: less than edits keep; so near are only objects that touched before rounding
@@ -55,7 +55,9 @@ class Parting:
         restore_controls(self.control_sets)
 
 
-def start_apart_steps(read: Callable[[], Steps[EditSnapshot]]) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
+def start_apart_steps(
+    read: Callable[[], Steps[EditSnapshot]],
+) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
     """Steps that read the scene and start a solver, after parting moving objects that only touch others.
 
     read: makes steps that read the scene. Raise InputError and StartIntersectsError, with nothing changed.
@@ -152,8 +154,8 @@ def _keep_contacts_steps(
 ) -> Steps[Started]:
     """Steps that start again with small minimum distances of objects in contact, if there are any.
 
-    Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others come
-    near on the way, objects would rise, or get stuck.
+    Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others
+    approach on the way, objects would rise, or get stuck.
     """
     settings = snapshot.settings
     chosen = {frozenset(names) for *names, _ in settings.pair_separations}
@@ -234,8 +236,7 @@ def _near_meshes(assembly: Assembly, movers: _Movers) -> list[VisibleMesh]:
     near = [
         mesh
         for mesh, box in zip(assembly.meshes, boxes, strict=True)
-        if mesh.owner.name in movers.names
-        or (box is not None and (box[0] <= high).all() and (low <= box[1]).all())
+        if mesh.owner.name in movers.names or (box is not None and (box[0] <= high).all() and (low <= box[1]).all())
     ]
     found = [(static, static.obstacle.triangles_near(low, high)) for static in assembly.obstacles]
     return [*near, *(static.cropped(rows) for static, rows in found if len(rows))]
