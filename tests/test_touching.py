@@ -120,7 +120,7 @@ def test_turned_crates_part_across_their_common_plane(seed: int) -> None:
     chance = np.random.default_rng(seed)
     angles, (x, y), place = chance.uniform(-3, 3, 3), chance.uniform(-1.5, 1.5, 2), chance.uniform(-3, 3, 3)
     rest, above = (each.turned(angles).moved(place) for each in (CUBE, CUBE.moved((x, y, 2))))
-    surface, q, moves = scene(above, rest)
+    surface, q, _ = scene(above, rest)
     if len(stiv.find_intersections(q, surface)) == 0:
         return
     found = parting(above, rest)

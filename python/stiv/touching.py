@@ -129,8 +129,8 @@ class _Contacts:
     def _ranks(self, axes: Floats, a: Floats, b: Floats) -> list[tuple[float, ...]]:
         """Which of two directions is likelier the way out where faces lie in one plane; the greater ones first.
 
-        Away from the faces of others, and with the bulk of the moving bodies; something flat, such as a carpet, with its
-        own front. Then upward.
+        With the bulk of the moving bodies. Something flat, such as a carpet: with its own front, and away from the
+        faces of others. Then upward.
         """
         bulk = axes @ self._toward_body
         fronts = axes @ (_mean_normal(a) + _mean_normal(b))
