@@ -419,3 +419,15 @@ def test_separate_keeps_its_gap() -> None:
     cube = cube_on_floor()
     separate(bpy.context, EditSettings(separation=0.01))
     assert cube.location.z > 1.009
+
+
+@pytest.mark.parametrize("place", [7.0, np.nextafter(np.float32(7), np.float32(0)), 1023.0, 15.5, -9.0])
+@pytest.mark.parametrize("distance", [0.0, 1e-7, 1e-6, 1e-5])
+def test_coordinates_at_powers_of_two(place: float, distance: float) -> None:
+    """The least distance that single precision can keep doubles there."""
+    add_grid("Floor", 3, 8.0, (place, 0, 0))
+    cube = add_cube("Cube", (place, 0, 1 + distance))
+    select(cube)
+    applied(shift(0, 1.5, -0.1))
+    assert cube.location.y == pytest.approx(1.5, abs=1e-3)
+    assert cube.location.z == pytest.approx(1, abs=1e-3)

@@ -31,6 +31,7 @@ from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
 
 GAP = 8  # between parted objects, in roundings of the moving objects
+SURPLUS = 1 + 2.0**-20  # of coordinates: a session computes them again, which may round to a larger power of two
 NEAR = 4  # gaps within which objects are in contact
 KEPT = 0.5  # of the gap: the minimum distance of objects in contact, the least that single precision can keep
 TOUCHING = 0.4  # of the gap: less than edits keep; so near are only objects that touched before rounding
@@ -71,10 +72,11 @@ def start_apart_steps(
             raise
         parting, refusal = (yield from _part_touching_steps(error.assembly, movers)), error
     else:
-        contacts = yield from _contacts_steps(*clear, movers)
+        contacts = yield from _contacts_steps(snapshot, movers, clear[1])
         parting = yield from _part_contacts_steps(snapshot.assembly, movers, contacts)
         if parting is None:
-            return *(yield from _keep_contacts_steps(*clear, movers, contacts)), None
+            kept = _with_contacts(snapshot, movers, contacts)
+            return *(clear if kept is snapshot else (kept, (yield from start_solver_steps(kept)))), None
     if parting is not None:
         try:
             return *(yield from _start_parted_steps(read, parting)), parting
@@ -89,9 +91,9 @@ def _start_parted_steps(read: Callable[[], Steps[EditSnapshot]], parting: Partin
     """Steps that start from the parted objects; if they do not succeed, or a caller ends them, they restore these."""
     try:
         snapshot = yield from read()
-        solver, movers = (yield from start_solver_steps(snapshot)), _Movers.of(snapshot)
-        contacts = yield from _contacts_steps(snapshot, solver, movers)
-        return (yield from _keep_contacts_steps(snapshot, solver, movers, contacts))
+        movers = _Movers.of(snapshot)
+        kept = _with_contacts(snapshot, movers, (yield from _contacts_steps(snapshot, movers)))
+        return kept, (yield from start_solver_steps(kept))
     except BaseException:
         with suppress(SceneChangedError):
             parting.restore()
@@ -136,23 +138,27 @@ def _part(
 
 
 def _contacts_steps(
-    snapshot: EditSnapshot, solver: EditSolver, movers: _Movers | None
+    snapshot: EditSnapshot, movers: _Movers | None, solver: EditSolver | None = None
 ) -> Steps[list[stiv.LeastDistance]]:
-    """Steps that find the contacts of moving objects, unless a minimum distance is chosen."""
-    if movers is None or not movers.are_alone or snapshot.settings.separation > 0 or not solver.has_session:
+    """Steps that find the contacts of moving objects, unless a minimum distance is chosen.
+
+    solver: started from the snapshot; None if there certainly is a contact.
+    """
+    if movers is None or not movers.are_alone or snapshot.settings.separation > 0:
         return []
     assembly = snapshot.assembly
-    is_alone = len(_near_meshes(assembly, movers)) == len(movers.meshes)
-    if is_alone or not movers.are_near(solver.session.least_distance()):
-        return []
+    if solver is not None:
+        is_alone = not solver.has_session or len(_near_meshes(assembly, movers)) == len(movers.meshes)
+        if is_alone or not movers.are_near(solver.session.least_distance()):
+            return []
     yield None
     return _find_contacts(assembly, movers)
 
 
-def _keep_contacts_steps(
-    snapshot: EditSnapshot, solver: EditSolver, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
-) -> Steps[Started]:
-    """Steps that start again with small minimum distances of objects in contact, if there are any.
+def _with_contacts(
+    snapshot: EditSnapshot, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
+) -> EditSnapshot:
+    """A snapshot with small minimum distances of objects in contact; the same if there are none.
 
     Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others
     approach on the way, objects would rise, or get stuck.
@@ -161,10 +167,9 @@ def _keep_contacts_steps(
     chosen = {frozenset(names) for *names, _ in settings.pair_separations}
     pairs = [each.bodies for each in contacts if frozenset(each.bodies) not in chosen]
     if movers is None or not pairs:
-        return snapshot, solver
+        return snapshot
     distances = (*settings.pair_separations, *((*names, KEPT * movers.gap) for names in pairs))
-    adapted = replace(snapshot, settings=replace(settings, pair_separations=distances))
-    return adapted, (yield from start_solver_steps(adapted))
+    return replace(snapshot, settings=replace(settings, pair_separations=distances))
 
 
 @dataclass(frozen=True)
@@ -197,7 +202,7 @@ class _Movers:
         points = assembly.positions[find_moving_vertices(assembly, snapshot.control_sets)]
         if len(points) == 0:
             return None
-        gap = GAP * max(rounding_of(points), *map(_rounding_of_places, sets))
+        gap = GAP * max(rounding_of(SURPLUS * points), *map(_rounding_of_places, sets))
         meshes = tuple(index for each in sets for index in each.surfaces)
         names = frozenset(assembly.meshes[index].owner.name for index in meshes)
         passing = [(a.partition(PART)[0], b.partition(PART)[0]) for a, b in settings.excluded.objects]
