@@ -501,7 +501,7 @@ class BlenderEdit:
         return self._writer.verify(self.surface).passed
 
     def restore(self) -> None:
-        """Restore the start exactly. Raises SceneChangedError.
+        """Restore the scene from before the edit exactly. Raises SceneChangedError.
 
         Collisions are off again if the edit began with them off.
         """
