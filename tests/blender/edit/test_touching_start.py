@@ -431,3 +431,15 @@ def test_coordinates_at_powers_of_two(place: float, distance: float) -> None:
     applied(shift(0, 1.5, -0.1))
     assert cube.location.y == pytest.approx(1.5, abs=1e-3)
     assert cube.location.z == pytest.approx(1, abs=1e-3)
+
+
+@pytest.mark.parametrize("way", [(2.3, -1.2, -0.2), (2.3, -1.2, 0), (-3.1, 1.3, -1)])
+def test_a_crate_slides_over_tiles_that_it_did_not_touch(way: tuple[float, float, float]) -> None:
+    for x, y in np.ndindex(5, 5):
+        add_cube(f"Tile {x} {y}", (2 * x, 2 * y, -1))
+    cube = add_cube("Cube", (4, 4, 1))
+    select(cube)
+    edit = begin()
+    edit.apply(shift(*way))
+    assert edit.write().passed and is_clear("Cube")
+    assert tuple(cube.location) == pytest.approx((4 + way[0], 4 + way[1], 1), abs=ROUNDING)

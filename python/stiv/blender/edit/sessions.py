@@ -225,9 +225,8 @@ def restore_controls(control_sets: Sequence[ControlSet]) -> None:
 def body_separations(assembly: Assembly, settings: EditSettings) -> dict[tuple[str | int, str | int], float]:
     """Minimum distances of pairs of objects as those of pairs of bodies."""
     bodies: dict[str, list[int]] = {}
-    names = [*(body.name for body in assembly.surface.bodies), *(each.owner.name for each in assembly.obstacles)]
-    for number, name in enumerate(names):
-        bodies.setdefault(name, []).append(number)
+    for number, body in enumerate(assembly.surface.bodies):
+        bodies.setdefault(body.name, []).append(number)
     return {
         (a, b): distance
         for first, second, distance in settings.pair_separations

@@ -33,7 +33,7 @@ from stiv.touching import are_touching, find_parting, rounding_of
 GAP = 8  # between parted objects, in roundings of the moving objects
 SURPLUS = 1 + 2.0**-20  # of coordinates: a session computes them again, which may round to a larger power of two
 NEAR = 4  # gaps within which objects are in contact
-KEPT = 0.5  # of the gap: the minimum distance of objects in contact, the least that single precision can keep
+KEPT = 0.5  # of the gap: the minimum distance where objects are in contact, the least that single precision can keep
 TOUCHING = 0.4  # of the gap: less than edits keep; so near are only objects that touched before rounding
 MOST_NEAR = 8  # pairs of objects in contact that are sought
 
@@ -72,11 +72,13 @@ def start_apart_steps(
             raise
         parting, refusal = (yield from _part_touching_steps(error.assembly, movers)), error
     else:
-        contacts = yield from _contacts_steps(snapshot, movers, clear[1])
+        contacts = yield from _contacts_steps(*clear, movers)
         parting = yield from _part_contacts_steps(snapshot.assembly, movers, contacts)
         if parting is None:
-            kept = _with_contacts(snapshot, movers, contacts)
-            return *(clear if kept is snapshot else (kept, (yield from start_solver_steps(kept)))), None
+            if movers is None or not contacts:
+                return *clear, None
+            kept = movers.with_small_distance(snapshot)
+            return kept, (yield from start_solver_steps(kept)), None
     if parting is not None:
         try:
             return *(yield from _start_parted_steps(read, parting)), parting
@@ -92,7 +94,7 @@ def _start_parted_steps(read: Callable[[], Steps[EditSnapshot]], parting: Partin
     try:
         snapshot = yield from read()
         movers = _Movers.of(snapshot)
-        kept = _with_contacts(snapshot, movers, (yield from _contacts_steps(snapshot, movers)))
+        kept = snapshot if movers is None else movers.with_small_distance(snapshot)
         return kept, (yield from start_solver_steps(kept))
     except BaseException:
         with suppress(SceneChangedError):
@@ -138,38 +140,22 @@ def _part(
 
 
 def _contacts_steps(
-    snapshot: EditSnapshot, movers: _Movers | None, solver: EditSolver | None = None
+    snapshot: EditSnapshot, solver: EditSolver, movers: _Movers | None
 ) -> Steps[list[stiv.LeastDistance]]:
-    """Steps that find the contacts of moving objects, unless a minimum distance is chosen.
-
-    solver: started from the snapshot; None if there certainly is a contact.
+    """Steps that find the nearest contact of moving objects, unless a minimum distance is chosen; all that touch but
+    for rounding.
     """
-    if movers is None or not movers.are_alone or snapshot.settings.separation > 0:
+    if movers is None or not movers.are_alone or snapshot.settings.separation > 0 or not solver.has_session:
         return []
-    assembly = snapshot.assembly
-    if solver is not None:
-        is_alone = not solver.has_session or len(_near_meshes(assembly, movers)) == len(movers.meshes)
-        if is_alone or not movers.are_near(solver.session.least_distance()):
-            return []
+    if len(_near_meshes(snapshot.assembly, movers)) == len(movers.meshes):
+        return []
+    least = solver.session.least_distance()
+    if least is None or not movers.are_near(least):
+        return []
+    if least.distance >= TOUCHING * movers.gap:
+        return [least]
     yield None
-    return _find_contacts(assembly, movers)
-
-
-def _with_contacts(
-    snapshot: EditSnapshot, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
-) -> EditSnapshot:
-    """A snapshot with small minimum distances of objects in contact; the same if there are none.
-
-    Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others
-    approach on the way, objects would rise, or get stuck.
-    """
-    settings = snapshot.settings
-    chosen = {frozenset(names) for *names, _ in settings.pair_separations}
-    pairs = [each.bodies for each in contacts if frozenset(each.bodies) not in chosen]
-    if movers is None or not pairs:
-        return snapshot
-    distances = (*settings.pair_separations, *((*names, KEPT * movers.gap) for names in pairs))
-    return replace(snapshot, settings=replace(settings, pair_separations=distances))
+    return _find_contacts(snapshot.assembly, movers)
 
 
 @dataclass(frozen=True)
@@ -214,9 +200,19 @@ class _Movers:
         """Would the next frame reset any of them?"""
         return any(is_keyed(each.find()) for control_set in self.sets for each in _writer(control_set).references)
 
-    def are_near(self, least: stiv.LeastDistance | None) -> bool:
+    def with_small_distance(self, snapshot: EditSnapshot) -> EditSnapshot:
+        """A snapshot with a minimum distance that objects in contact already have, unless one is chosen.
+
+        Otherwise all their faces would have the automatic one, except those that are nearer at the start: where others
+        approach on the way, objects would rise, or get stuck.
+        """
+        if not self.are_alone or snapshot.settings.separation > 0:
+            return snapshot
+        return replace(snapshot, settings=replace(snapshot.settings, separation=KEPT * self.gap))
+
+    def are_near(self, least: stiv.LeastDistance) -> bool:
         """Is a distance that of objects in contact?"""
-        return least is not None and least.distance <= NEAR * self.gap
+        return least.distance <= NEAR * self.gap
 
 
 def _find_contacts(assembly: Assembly, movers: _Movers) -> list[stiv.LeastDistance]:
