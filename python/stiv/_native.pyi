@@ -277,6 +277,7 @@ class EditOptions:
     constraints: ConstraintKind
     metric: MetricKind
     narrow_phase: NarrowPhase
+    parts_may_cut: bool
     single_precision: bool
     solver: ConstraintSolver
     tight: bool
