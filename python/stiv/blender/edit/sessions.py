@@ -28,6 +28,7 @@ from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.settings import EditSettings
 from stiv.seams import Seams
 from stiv.task import Call, Steps
+from stiv.touching import rounding_of
 
 SKIN = 0.25  # of the altitude of small triangles: greatest minimum distance of skin from itself
 
@@ -103,7 +104,7 @@ def _skin_separations(
     as an approach.
     """
     found: dict[tuple[str | int, str | int], float] = {}
-    kept = 4 * float(np.spacing(np.float32(np.abs(assembly.positions).max(initial=0))))  # the least in storage
+    kept = 4 * rounding_of(assembly.positions)  # the least in storage
     for index in (index for each in control_sets if each.posed is not None for index in each.surfaces):
         mesh = assembly.meshes[index]
         if settings.separation > 0 and len(mesh.triangles):

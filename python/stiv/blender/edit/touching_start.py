@@ -70,13 +70,15 @@ def start_apart_steps(
     except ObjectsIntersectError as error:
         if movers is None or not _only_touch(error, movers.names):
             raise
-        parting, refusal = (yield from _part_touching_steps(error.assembly, movers)), error
+        parting, refusal = (yield from _part_steps(error.assembly, movers)), error
     else:
         contacts = yield from _contacts_steps(*clear, movers)
-        parting = yield from _part_contacts_steps(snapshot.assembly, movers, contacts)
+        if movers is None or not contacts:
+            return *clear, None
+        parting = None
+        if contacts[0].distance < TOUCHING * movers.gap:
+            parting = yield from _part_steps(snapshot.assembly, movers, [each.triangles for each in contacts])
         if parting is None:
-            if movers is None or not contacts:
-                return *clear, None
             kept = movers.with_small_distance(snapshot)
             return kept, (yield from start_solver_steps(kept)), None
     if parting is not None:
@@ -102,28 +104,18 @@ def _start_parted_steps(read: Callable[[], Steps[EditSnapshot]], parting: Partin
         raise
 
 
-def _part_touching_steps(assembly: Assembly, movers: _Movers) -> Steps[Parting | None]:
-    """Steps that part the moving objects from those that they touch; None, with nothing changed, if they cannot."""
+def _part_steps(assembly: Assembly, movers: _Movers, near: Sequence[tuple[int, int]] = ()) -> Steps[Parting | None]:
+    """Steps that part the moving objects from those that they touch; None, with nothing changed, if they cannot.
+
+    near: pairs of triangles that would touch, were it not for rounding.
+    """
     yield None
     surfaces, is_moving = assemble_against_others(_near_meshes(assembly, movers), movers.names, movers.ignored)
     yield None
-    return _part(surfaces, is_moving, movers)
+    return _part(surfaces, is_moving, movers, near)
 
 
-def _part_contacts_steps(
-    assembly: Assembly, movers: _Movers | None, contacts: Sequence[stiv.LeastDistance]
-) -> Steps[Parting | None]:
-    """Steps that part the moving objects from those that they would touch, were it not for rounding."""
-    if movers is None or not contacts or contacts[0].distance >= TOUCHING * movers.gap:
-        return None
-    yield None
-    surfaces, is_moving = assemble_against_others(_near_meshes(assembly, movers), movers.names, movers.ignored)
-    return _part(surfaces, is_moving, movers, [each.triangles for each in contacts])
-
-
-def _part(
-    surfaces: Assembly, is_moving: Flags, movers: _Movers, pairs: Sequence[tuple[int, int]] = ()
-) -> Parting | None:
+def _part(surfaces: Assembly, is_moving: Flags, movers: _Movers, pairs: Sequence[tuple[int, int]]) -> Parting | None:
     """Translate the moving objects together by the least distance that parts all that they touch.
 
     None, with nothing changed, if something cuts deeper than rounding, or no translation of that size parts it. pairs:
