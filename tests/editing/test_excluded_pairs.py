@@ -271,6 +271,20 @@ def test_a_part_slides_along_the_side_that_it_is_pressed_into() -> None:
     np.testing.assert_allclose(session.controls - goal, np.outer(touches, (0.2, 0, 0)), atol=1e-3)
 
 
+@pytest.mark.parametrize("place, size", [((0, 0, 0), (1, 1, 1)), ((0.25, 0.25, 0), (0.5, 0.5, 0.5))])
+def test_a_part_that_lies_inside_another_is_free_to_move(
+    place: tuple[float, float, float], size: tuple[float, float, float]
+) -> None:
+    """A mirrored copy in place of the original, and a box on the floor inside another: each face only touches others,
+    but the boxes share their insides.
+    """
+    triangles, start = flush_boxes(place, size)
+    session = stiv.EditSession(triangles, stiv.identity(16), start, stiv.EditOptions(exclude="intersecting"))
+    goal = start.copy()
+    goal[8:] += (0.02, 0.01, -0.1)
+    assert session.edit(goal).status == "reached"
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_faces_that_touch_are_the_same_beside_a_distant_body(seed: int) -> None:
     """Rounding decides which slivers intersect, so they must be examined where they are stored."""

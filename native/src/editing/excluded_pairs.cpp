@@ -56,7 +56,42 @@ struct PlacedTriangles {
 
   bool intersect(Index a, Index b) const { return triangles_intersect(corners(a), corners(b), q); }
   double depth(Index a, Index b) const { return intersection_depth(corners(a), corners(b), q); }
+
+  bool overlap_in_plane(Index a, Index b, double tolerance) const {
+    return stiv::overlap_in_plane(corners(a), corners(b), q, tolerance);
+  }
+
+  bool coincide(Index a, Index b) const {
+    const auto sorted = [&](Index triangle) {
+      std::array<std::array<double, 3>, 3> points;
+      std::transform(triangles.row(triangle).begin(), triangles.row(triangle).end(), points.begin(), [&](Index corner) {
+        return std::array{q(corner, 0), q(corner, 1), q(corner, 2)};
+      });
+      std::sort(points.begin(), points.end());
+      return points;
+    };
+    return sorted(a) == sorted(b);
+  }
 };
+
+/// For each vertex, whether its connected component is closed: each edge has as many triangles in one direction as in
+/// the other.
+std::vector<unsigned char> in_closed_components(const Surface& surface, const std::vector<Index>& component) {
+  std::vector<std::pair<Index, Index>> upward, downward, borders;
+  for (const auto& corners : surface.triangles().rowwise())
+    for (Index k = 0; k < 3; ++k) {
+      const Index from = corners[k], to = corners[(k + 1) % 3];
+      (from < to ? upward : downward).push_back(std::minmax({from, to}));
+    }
+  std::sort(upward.begin(), upward.end());
+  std::sort(downward.begin(), downward.end());
+  std::set_symmetric_difference(upward.begin(), upward.end(), downward.begin(), downward.end(),
+                                std::back_inserter(borders));
+  std::vector<unsigned char> closed(component.size(), 1);  // by the number of the component, then by vertex
+  for (const auto& border : borders) closed[at(component[at(border.first)])] = 0;
+  for (std::size_t vertex = 0; vertex < component.size(); ++vertex) closed[vertex] = closed[at(component[vertex])];
+  return closed;
+}
 
 /// Whether all corners of two triangles move by the same displacement, up to a tolerance.
 bool move_together(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& start,
@@ -107,28 +142,48 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
 /// Divides the given pairs by their depth, and by whether their parts only touch.
 void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
+  for (const auto& pair : pairs)
+    if (placed.intersect(pair.first, pair.second))
+      (placed.depth(pair.first, pair.second) < rounding() ? shallow_ : deep_).push_back(pair);
+  if (!parts_may_cut) take_flush(start);
+  std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
+}
+
+/// Takes the shallow pairs of parts that only touch.
+void ExcludedPairs::take_flush(const PositionsView& start) {
   const std::vector<Index> component = surface_->connected_components();
+  const auto first_corner = [&](Index triangle) { return surface_->triangles()(triangle, 0); };
   const auto parts = [&](const std::pair<Index, Index>& pair) -> std::pair<Index, Index> {
-    const auto part = [&](Index triangle) { return component[at(surface_->triangles()(triangle, 0))]; };
+    const auto part = [&](Index triangle) { return component[at(first_corner(triangle))]; };
     return std::minmax(part(pair.first), part(pair.second));
   };
   IndexPairs cutting;
-  for (const auto& pair : pairs) {
-    if (!placed.intersect(pair.first, pair.second)) continue;
-    const bool is_shallow = placed.depth(pair.first, pair.second) < rounding();
-    (is_shallow ? shallow_ : deep_).push_back(pair);
-    if (!is_shallow) cutting.push_back(parts(pair));
-  }
+  for (const auto& pair : deep_) cutting.push_back(parts(pair));
+  for (const auto& pair : pairs_inside(component, start)) cutting.push_back(parts(pair));
   sort_unique(cutting);
   const auto is_flush = [&](const std::pair<Index, Index>& pair) {
-    return !parts_may_cut &&
-           surface_->body_of(surface_->triangles()(pair.first, 0)) ==
-               surface_->body_of(surface_->triangles()(pair.second, 0)) &&
+    return surface_->body_of(first_corner(pair.first)) == surface_->body_of(first_corner(pair.second)) &&
            !std::binary_search(cutting.begin(), cutting.end(), parts(pair));
   };
   std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(flush_), is_flush);
   std::erase_if(shallow_, is_flush);
-  std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
+}
+
+/// The shallow pairs in one plane with the insides of both parts on the same side of it: these lie in each other, such
+/// as a mirrored copy in place of the original. Without an inside, only equal triangles do.
+IndexPairs ExcludedPairs::pairs_inside(const std::vector<Index>& component, const PositionsView& start) const {
+  const PlacedTriangles placed{surface_->triangles(), start};
+  IndexPairs found;
+  std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(found),
+               [&](const auto& pair) { return placed.overlap_in_plane(pair.first, pair.second, rounding()); });
+  if (found.empty()) return found;
+  const std::vector<unsigned char> closed = in_closed_components(*surface_, component);
+  const auto is_closed = [&](Index triangle) { return closed[at(surface_->triangles()(triangle, 0))] != 0; };
+  std::erase_if(found, [&](const auto& pair) {
+    const auto& [a, b] = pair;
+    return !(is_closed(a) && is_closed(b)) && !placed.coincide(a, b);
+  });
+  return found;
 }
 
 void ExcludedPairs::add_touching(const PositionsView& start) {

@@ -20,9 +20,10 @@ struct IntersectionCount {
 
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
 /// bodies that touch, which may intersect no deeper than rounding. The same holds for given pairs of one body whose
-/// parts only touch: those of two connected components, or of one, without a pair that is deeper at the start. An event
-/// belongs to every pair of a triangle at its first side and one at its second. It is ignored only if each of these
-/// pairs is excluded, so that all other pairs stay guarded. (mathematics.md, "Excluded pairs")
+/// parts only touch: those of two connected components, or of one, without a pair that is deeper at the start, or in
+/// one plane with both insides on the same side. An event belongs to every pair of a triangle at its first side and one
+/// at its second. It is ignored only if each of these pairs is excluded, so that all other pairs stay guarded.
+/// (mathematics.md, "Excluded pairs")
 class ExcludedPairs {
  public:
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
@@ -64,6 +65,8 @@ class ExcludedPairs {
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
   void take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start);
+  void take_flush(const PositionsView& start);
+  IndexPairs pairs_inside(const std::vector<Index>& component, const PositionsView& start) const;
   void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);

@@ -44,6 +44,9 @@ Corners sides_of(const Corners& triangle) {
   return {triangle[1] - triangle[0], triangle[2] - triangle[1], triangle[0] - triangle[2]};
 }
 
+/// The normal, of any length.
+Vector3 normal_of(const Corners& triangle) { return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]); }
+
 /// Calls a function with each axis of the separating axis theorem, of any length.
 template <class Call>
 void for_separating_axes(const Corners& a, const Corners& b, const Call& call) {
@@ -78,7 +81,7 @@ double least_triangle_distance(const std::array<Index, 3>& first, const std::arr
   const Vector3 centres = b[0] + b[1] + b[2] - a[0] - a[1] - a[2];
   double gap = gap_along(centres, a, b);
   for (const Corners& triangle : {a, b}) {
-    const Vector3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
+    const Vector3 normal = normal_of(triangle);
     gap = std::max(gap, gap_along(normal.dot(centres) < 0 ? Vector3(-normal) : normal, a, b));
   }
   return gap * (1 - 0x1p-40);
@@ -130,6 +133,21 @@ double intersection_depth(const std::array<Index, 3>& first, const std::array<In
   double depth = std::numeric_limits<double>::infinity();
   for_separating_axes(a, b, [&](const Vector3& axis) { depth = std::min(depth, parting_motion(axis, a, b)); });
   return depth;
+}
+
+bool overlap_in_plane(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,
+                      double tolerance) {
+  const Vector3 origin = q.row(first[0]);
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  const Vector3 normal = normal_of(a), other = normal_of(b);
+  const auto in_plane = [&](const Vector3& along) {
+    return along.norm() > 0 && std::max(-gap_along(along, a, b), -gap_along(along, b, a)) <= tolerance;
+  };
+  if (normal.dot(other) <= 0 || !in_plane(normal) || !in_plane(other)) return false;
+  bool overlap = true;
+  for (const auto& [corners, up] : {std::pair(a, normal), std::pair(b, other)})
+    for (const Vector3& side : sides_of(corners)) overlap &= parting_motion(up.cross(side), a, b) > tolerance;
+  return overlap;
 }
 
 Vector3 parting_direction(const std::array<Index, 3>& first, const std::array<Index, 3>& second,

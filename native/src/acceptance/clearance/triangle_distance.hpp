@@ -26,6 +26,10 @@ double distance_apart(std::array<Index, 3> a, std::array<Index, 3> b, const Posi
 double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                           const PositionsView& q);
 
+/// Whether two triangles lie in one plane and face the same way, up to a tolerance, and overlap there by more than it.
+bool overlap_in_plane(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,
+                      double tolerance);
+
 /// The direction from the second triangle to the first along which they overlap least at `end`, of those along their
 /// separating axes in which they overlap by less than `tolerance` at `start`; zero if there is none. A normal of either
 /// comes first: in a flat wall, other directions would keep a face from sliding over the edges of triangles.
