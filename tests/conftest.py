@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Shared by all tests: the add-on, the marker for Blender, no deadlines, and an exit that avoids Blender's crash."""
 
+import hashlib
 import importlib.util
 import os
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,7 +20,8 @@ settings.register_profile(
 )
 settings.load_profile("untimed")
 
-ADDON = Path(__file__).resolve().parents[1] / "addon"
+ROOT = Path(__file__).resolve().parents[1]
+ADDON = ROOT / "addon"
 
 EXIT_CODE = pytest.StashKey[int]()
 
@@ -41,11 +44,29 @@ def registered() -> Iterator[None]:
     stiv_addon.unregister()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests in tests/blender, and those of every module that imports bpy."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the tests in tests/blender, and those of every module that imports bpy; leave shared ones to other Blenders.
+
+    Tests that are named in the command line, and all with STIV_LONG=1, run on every Blender.
+    """
     for item in items:
         if item.path.parent.name == "blender" or "bpy" in vars(getattr(item, "module", None) or object):
             item.add_marker(pytest.mark.blender)
+    if "bpy" in sys.modules and "STIV_LONG" not in os.environ and not any("::" in name for name in config.args):
+        others = [item for item in items if item.get_closest_marker("shared") and not runs_here(item)]
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if item not in others]
+
+
+def runs_here(item: pytest.Item) -> bool:
+    """Whether this is the Blender that runs a shared test. The name decides, so that each runs on one of them."""
+    import bpy
+
+    table = tomllib.loads((ROOT / "tools/blender_versions.toml").read_text())
+    versions = table[f"{sys.version_info.major}.{sys.version_info.minor}"]["blender"]
+    here = ".".join(map(str, bpy.app.version))
+    number = int.from_bytes(hashlib.sha256(item.nodeid.encode()).digest(), "big")
+    return here not in versions or here == versions[number % len(versions)]
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

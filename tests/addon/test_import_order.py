@@ -36,6 +36,7 @@ os._exit(failed)  # Blender may crash when Python exits
 """
 
 
+@pytest.mark.shared
 def test_every_module_can_be_imported_first() -> None:
     folder = next(iter(stiv_addon.__path__))
     done = subprocess.run([sys.executable, "-c", EACH_FIRST, folder], capture_output=True, text=True, check=False)

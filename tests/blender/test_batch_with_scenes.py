@@ -24,6 +24,7 @@ def coordinates(path: Path):
     return read_surface(bpy.context).positions
 
 
+@pytest.mark.shared
 def test_a_batch_of_scenes_gives_what_single_commands_give(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     stiv_addon = pytest.importorskip("stiv_addon", reason="the add-on is not installed as a package")
     entries = []

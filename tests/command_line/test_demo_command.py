@@ -21,6 +21,7 @@ def test_without_blender_it_says_what_to_install(tmp_path, capsys):
     assert not (tmp_path / "demo").exists()
 
 
+@pytest.mark.shared
 @pytest.mark.blender
 def test_it_writes_pictures_scene_and_report_and_checks_what_it_saved(tmp_path, capsys, monkeypatch):
     pytest.importorskip("bpy")

@@ -57,6 +57,7 @@ def test_a_correction_takes_turns_and_writes_the_tools_step() -> None:
     expect_free()
 
 
+@pytest.mark.shared
 def test_a_stopped_correction_restores_the_state_before_the_tool_exactly() -> None:
     before = tuple(box().location)
     work = long_correction()

@@ -98,6 +98,7 @@ def test_place_adds_copies_in_one_undo_step() -> None:
     assert len(bpy.data.objects) == 2
 
 
+@pytest.mark.shared
 def test_fit_into_names_objects_without_room() -> None:
     bpy.ops.mesh.primitive_cube_add(size=2.2, location=(0, 0, 5))
     box = bpy.context.object

@@ -139,6 +139,7 @@ def run(folder: Path, *options: str) -> tuple[int, Path, Path]:
     return program.run(["resolve", *arguments, *options]), scene, out
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("scene", SCENES)
 def test_the_render_is_free_and_check_agrees(tmp_path: Path, scene: str) -> None:
     SCENES[scene]()
@@ -234,6 +235,7 @@ def test_the_scenes_own_guard_applies_and_a_large_render_is_reported(
     assert "the render is not guarded: too many triangles; use --guard both" in capsys.readouterr().out
 
 
+@pytest.mark.shared
 def test_entries_of_a_batch_have_their_guards(tmp_path: Path) -> None:
     SCENES["corners"]()
     save_blend(tmp_path / "moves.blend")

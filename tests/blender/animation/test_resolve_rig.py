@@ -79,6 +79,7 @@ def joint_acceleration(rotations: np.ndarray) -> float:
     return float(np.linalg.norm(np.diff(skew, axis=0), axis=2).max())
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("name", ["walk", "pick"])
 def test_a_clip_is_corrected_by_its_keyframes(tmp_path: Path, name: str) -> None:
     make_clip(name)
@@ -114,6 +115,7 @@ def split_meshes() -> None:
         edited.free()
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("region", ["0", "1.2"])
 def test_a_split_mesh_is_corrected_like_the_whole_one(tmp_path: Path, region: str) -> None:
     turned = []
@@ -222,6 +224,7 @@ def swinging_bar() -> None:
     bpy.context.scene.frame_end = 13
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("is_split", [False, True])
 def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, capsys, is_split: bool) -> None:
     swinging_bar()
@@ -246,6 +249,7 @@ def test_frames_beyond_the_bones_get_corrective_keys_if_allowed(tmp_path: Path, 
     assert all(key.value == 0 for key in keys if key.name.startswith("Corrective"))
 
 
+@pytest.mark.shared
 def test_keyframes_elsewhere_keep_their_values_and_shapes(tmp_path: Path) -> None:
     make_clip("reach")
     rig = bpy.data.objects["Rig"]

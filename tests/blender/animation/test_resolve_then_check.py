@@ -72,6 +72,7 @@ SCENES = {
 }
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("scene", SCENES)
 def test_resolved_files_pass_check(tmp_path: Path, scene: str) -> None:
     SCENES[scene]()
@@ -84,6 +85,7 @@ def test_resolved_files_pass_check(tmp_path: Path, scene: str) -> None:
     assert program.run(["check", out, "--frames", f"1:{LAST}"]) == 0
 
 
+@pytest.mark.shared
 def test_faces_that_fold_are_split_and_nothing_else_changes(tmp_path: Path) -> None:
     SCENES["folded"]()
     bpy.data.objects["Cylinder"].data.uv_layers.new(name="UV")

@@ -75,6 +75,7 @@ def posed(is_split: bool, kind: str = "rotate", **settings: Any) -> tuple[Any, B
     return body, edit, result, float(rig.pose.bones["Arm.L"].rotation_quaternion.angle)
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("without_box", [False, True])
 def test_a_split_character_is_posed_like_the_whole_one(without_box: bool) -> None:
     """Not even the number of the faces at joints differs, which are not tested."""

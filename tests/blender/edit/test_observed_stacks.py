@@ -39,6 +39,7 @@ def begin(settings: EditSettings = DEFORM) -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, settings, "move")
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("way", ["deforming", "edit mode"])
 @pytest.mark.parametrize("name", STACKS)
 def test_pieces_pushed_against_a_body(name: str, way: str) -> None:
@@ -112,6 +113,7 @@ def _meets_at(ob: Any, world: np.ndarray) -> bool:
 
 
 # 140: a Triangulate modifier turned diagonals unseen; 20258: a Curve modifier turns a motion down to the side
+@pytest.mark.shared
 @pytest.mark.parametrize("seed", [*range(12), 140, 20258])
 def test_random_combinations_of_modifiers(seed: int) -> None:
     """Followed without intersections, or refused in a sentence; tests/long/stack_trials.py tries 500."""

@@ -95,6 +95,7 @@ def test_the_separation_holds_toward_obstacles(row: Any) -> None:
         edit.restore()
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("settings", [EditSettings(), DEFORM])
 @pytest.mark.parametrize("steps", [1, 7, 60])
 def test_a_drag_toward_an_obstacle_ends_as_in_a_surface_of_everything(

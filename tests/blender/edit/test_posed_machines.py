@@ -101,6 +101,7 @@ def test_a_joint_of_two_pieces_turns(kind: str) -> None:
     assert "faces at joints cut into each other" in edit.fold_note
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize(("kind", "antenna"), [*((kind, False) for kind in KINDS), (KINDS[0], True)])
 def test_pieces_collide_beyond_their_joint(kind: str, antenna: bool) -> None:
     rig, pieces = make_arm(kind, antenna)

@@ -332,6 +332,7 @@ def test_an_edit_says_how_many_faces_at_joints_cut_into_each_other() -> None:
     assert again.fold_note == ""
 
 
+@pytest.mark.shared
 def test_folds_of_the_viewport_and_of_the_render_are_found_apart() -> None:
     """Both have faces and vertices with the same numbers. Without folds in either, none are named."""
     _, body, _ = box_below_hand(0.14)
@@ -341,6 +342,7 @@ def test_folds_of_the_viewport_and_of_the_render_are_found_apart() -> None:
     assert check_scene(bpy.context).pairs == () and edit.fold_note == ""
 
 
+@pytest.mark.shared
 def test_the_region_of_a_joint_is_adjustable() -> None:
     angles = []
     for region in (0.0, 1.2, 2.0):
@@ -420,6 +422,7 @@ def count_intersections(body: Any, obstacles: list[Any]) -> int:
     return sum(intersecting(body, each) for each in obstacles) + pairs_of(*limbs(body))
 
 
+@pytest.mark.shared
 def test_random_poses_never_intersect() -> None:
     """Random rotations of random bones among obstacles: after each, the exact test finds nothing."""
     random, statuses = np.random.default_rng(7), []

@@ -120,6 +120,7 @@ def chosen(mover: Any) -> frozenset[str]:
     return obstacle_choice.find_obstacles(bpy.context, [mover], (), EditSettings())
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("first", range(0, SCENES * SEEDS, SEEDS))
 def test_obstacles_stay_as_they_are_when_the_object_moves(first: int) -> None:
     kept, left = 0, 0
@@ -169,6 +170,7 @@ def drag(edit: Any, seed: int) -> tuple[Any, ...]:
     return result.status, bodies, edit.standstill_note(result), np.array(bpy.data.objects["Mover"].matrix_world)
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("first", range(0, SCENES * SEEDS, SEEDS))
 def test_an_edit_with_obstacles_ends_as_in_a_surface_of_everything(first: int) -> None:
     compared, touching = 0, 0

@@ -30,6 +30,7 @@ def intersecting() -> set[frozenset[tuple[str, int]]]:
     }
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("levels", [0, 1])
 @pytest.mark.parametrize("in_edit_mode", [False, True])
 def test_a_mesh_that_intersects_itself_is_edited_and_no_other_faces_intersect(levels: int, in_edit_mode: bool) -> None:
@@ -128,6 +129,7 @@ def test_other_objects_that_intersect_still_need_a_decision() -> None:
     assert not any("Suzanne" in line and "Floor" not in line for line in str(refused.value).split(";")[1:2])
 
 
+@pytest.mark.shared
 def test_obstacles_that_intersect_each_other_do_not_block() -> None:
     add_cube("One", (3, 0, 0))
     add_cube("Other", (3.5, 0.2, 0.1))

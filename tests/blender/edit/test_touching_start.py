@@ -421,6 +421,7 @@ def test_separate_keeps_its_gap() -> None:
     assert cube.location.z > 1.009
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("place", [7.0, np.nextafter(np.float32(7), np.float32(0)), 1023.0, 15.5, -9.0])
 @pytest.mark.parametrize("distance", [0.0, 1e-7, 1e-6, 1e-5])
 def test_coordinates_at_powers_of_two(place: float, distance: float) -> None:

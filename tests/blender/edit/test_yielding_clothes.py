@@ -88,6 +88,7 @@ def test_a_cloth_on_a_cage_yields_to_an_arm(rig: Any) -> None:
     expect_yielded(rig, cloth, before, ("Body",))
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("modifier", ["", "SUBSURF", "SOLIDIFY"])
 def test_a_skinned_sleeve_yields_to_a_box(rig: Any, modifier: str) -> None:
     """The sleeve follows the arm by Blender's Armature modifier, and the box dents it."""
@@ -122,6 +123,7 @@ def test_a_lattice_yields(rig: Any) -> None:
     assert any(np.abs(np.array(p.co_deform) - p.co).max() > 0.01 for p in lattice.data.points)
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("kind", ["laplacian", "arap"])
 def test_soft_handles_yield(rig: Any, kind: str) -> None:
     cloth = add_sheet(1.15)

@@ -53,6 +53,7 @@ def add_parts(count: int, size: float, seed: int = 0) -> list[bpy.types.Object]:
     ]
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize(("rim", "thickness", "tilt"), [(0.05, 0.0, 0.2), (0.05, 0.2, 0.0), (1.2, 0.2, 0.0)])
 def test_bowls_and_jars_are_filled_from_above(rim: float, thickness: float, tilt: float) -> None:
     """A thin bowl that is tilted, a thick one, and a jar; each part is between its wall, by Blender's ray casts."""
@@ -100,6 +101,7 @@ def test_everything_is_inside_a_closed_mesh() -> None:
         assert winding(positions(part), ball) == pytest.approx(np.ones(8), abs=1e-3)
 
 
+@pytest.mark.shared
 def test_the_rest_stays_and_is_named_unless_it_may_shrink() -> None:
     box, parts = crate(1.0, 0.1), add_parts(6, 0.3)
     starts = {part.name: tuple(part.location) for part in parts}

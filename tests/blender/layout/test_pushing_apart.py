@@ -31,6 +31,7 @@ def test_two_cubes_part_along_the_axis_of_least_depth(x: float, y: float, z: flo
     assert nearest_pair(bpy.context).distance >= H * (1 - 1e-4)
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("seed", range(2))
 def test_a_random_pile_comes_apart(seed: int) -> None:
     rng = np.random.default_rng(seed)

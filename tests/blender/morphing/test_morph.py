@@ -264,6 +264,7 @@ def add_shirt(radius: float = 1.2) -> Any:
     return shirt
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("kind", ["vertices", "arap", "lattice"])
 def test_clothes_yield_to_a_body_that_changes(kind: str) -> None:
     """With Yields: Others, the slider reaches its goal, and the shirt is wider by then."""

@@ -60,6 +60,7 @@ def test_steps_end_as_one_call_does_and_show_nothing_in_between() -> None:
     assert values(ball) == in_steps != start
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("kind", ["vertices", "arap"])
 def test_clothes_in_steps_end_as_in_one_call(kind: str) -> None:
     shirt, settings = dressed(kind)

@@ -351,6 +351,7 @@ def test_welding_refuses_shared_meshes_and_shape_keys_by_name() -> None:
         repair_scene(bpy.context, RepairSettings(weld=True))
 
 
+@pytest.mark.shared
 def test_a_time_limit_leaves_the_start_or_the_best_repair_and_says_so() -> None:
     tube = add_tube()
     select(tube)
@@ -398,6 +399,7 @@ def test_a_time_limit_without_a_better_step_changes_nothing(monkeypatch: pytest.
     assert snapshot() == before
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("rounds", [1, 4])
 def test_a_time_limit_keeps_the_last_clear_state_of_an_expansion(rounds: int) -> None:
     tube = add_tube()

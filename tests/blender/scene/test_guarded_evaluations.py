@@ -187,6 +187,7 @@ def random_stack(choose: random.Random, ob: Any) -> None:
             modifier.levels, modifier.render_levels = choose.choice([(0, 2), (1, 2), (1, 3), (2, 1), (2, 2)])
 
 
+@pytest.mark.shared
 @pytest.mark.parametrize("seed", range(24))
 def test_random_stacks_modes_and_levels(seed: int) -> None:
     choose = random.Random(seed)
