@@ -9,6 +9,7 @@
 #include "acceptance/clearance/triangle_distance.hpp"
 #include "acceptance/intersection/near_pairs.hpp"
 #include "editing/touching_pairs.hpp"
+#include "penetration/body_components.hpp"
 #include "stiv/detection/distance.hpp"
 #include "stiv/error.hpp"
 
@@ -74,21 +75,12 @@ struct PlacedTriangles {
   }
 };
 
-/// For each vertex, whether its connected component is closed: each edge has as many triangles in one direction as in
-/// the other.
+/// For each vertex, whether its connected component has no boundary.
 std::vector<unsigned char> in_closed_components(const Surface& surface, const std::vector<Index>& component) {
-  std::vector<std::pair<Index, Index>> upward, downward, borders;
-  for (const auto& corners : surface.triangles().rowwise())
-    for (Index k = 0; k < 3; ++k) {
-      const Index from = corners[k], to = corners[(k + 1) % 3];
-      (from < to ? upward : downward).push_back(std::minmax({from, to}));
-    }
-  std::sort(upward.begin(), upward.end());
-  std::sort(downward.begin(), downward.end());
-  std::set_symmetric_difference(upward.begin(), upward.end(), downward.begin(), downward.end(),
-                                std::back_inserter(borders));
-  std::vector<unsigned char> closed(component.size(), 1);  // by the number of the component, then by vertex
-  for (const auto& border : borders) closed[at(component[at(border.first)])] = 0;
+  std::vector<std::array<Index, 3>> triangles;
+  for (const auto& corners : surface.triangles().rowwise()) triangles.push_back({corners[0], corners[1], corners[2]});
+  std::vector<unsigned char> closed(component.size(), 1);  // by the first vertex of each component, then by vertex
+  for (const auto& edge : boundary_edges(triangles)) closed[at(component[at(edge[0])])] = 0;
   for (std::size_t vertex = 0; vertex < component.size(); ++vertex) closed[vertex] = closed[at(component[vertex])];
   return closed;
 }

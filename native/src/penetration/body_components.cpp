@@ -10,8 +10,6 @@ namespace stiv {
 
 namespace {
 
-using Edge = std::array<Index, 2>;
-
 std::vector<Index> triangles_of(const Surface& surface, Index body) {
   std::vector<Index> triangles;
   for (Index triangle = 0; triangle < static_cast<Index>(surface.triangles().rows()); ++triangle)
@@ -27,10 +25,11 @@ std::vector<Index> seeds_of_vertices(const BodyMesh& mesh) {
   return seed;
 }
 
-/// Edges with more triangles in one direction than in the other.
-std::vector<Edge> boundary_of(const BodyMesh& mesh) {
-  std::vector<Edge> upward, downward, boundary;
-  for (const auto& corners : mesh.corners)
+}  // namespace
+
+std::vector<std::array<Index, 2>> boundary_edges(const std::vector<std::array<Index, 3>>& triangles) {
+  std::vector<std::array<Index, 2>> upward, downward, boundary;
+  for (const auto& corners : triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       const Index from = corners[k], to = corners[(k + 1) % 3];
       if (from < to) upward.push_back({from, to});
@@ -43,13 +42,11 @@ std::vector<Edge> boundary_of(const BodyMesh& mesh) {
   return boundary;
 }
 
-}  // namespace
-
 BodyComponents body_components(const Surface& surface, Index body) {
   const BodyMesh mesh = body_mesh(surface, triangles_of(surface, body));
   const std::vector<Index> seed = seeds_of_vertices(mesh);
   std::vector<unsigned char> has_boundary(mesh.vertices.size(), 0);  // by seed
-  for (const Edge& edge : boundary_of(mesh)) has_boundary[at(seed[at(edge[0])])] = 1;
+  for (const auto& edge : boundary_edges(mesh.corners)) has_boundary[at(seed[at(edge[0])])] = 1;
   BodyComponents components;
   for (std::size_t k = 0; k < mesh.triangles.size(); ++k)
     (has_boundary[at(seed[at(mesh.corners[k][0])])] != 0 ? components.open : components.closed)
