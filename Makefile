@@ -26,6 +26,7 @@ BLENDER_MODULES := $(BLENDERS:%=build/venv-blender-%/downloaded)
 
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
+export CCACHE_SLOPPINESS := pch_defines,time_macros
 endif
 
 .PHONY: release docs test-docs test-long test-arm64 test-arm64-native test-arm64-python peers fuzz coverage help demo test wheels test-windows test-windows-native test-windows-blender test-native test-sanitizers test-threads test-python test-blender test-window lint extension bench format clean
