@@ -45,7 +45,7 @@ def guard_long_correction(window: Window) -> Steps:
     yield from stroke(window, INTO_WALL)
     yield from window.until(correcting, "a long correction", LONG)
     turns, longest, last = 0, 0.0, time.perf_counter()
-    while correcting() and turns < 20:
+    while correcting() and turns < 8:
         yield 0.01
         now = time.perf_counter()
         turns, longest, last = turns + 1, max(longest, now - last), now
