@@ -53,20 +53,25 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if item.path.parent.name == "blender" or "bpy" in vars(getattr(item, "module", None) or object):
             item.add_marker(pytest.mark.blender)
     if "bpy" in sys.modules and "STIV_LONG" not in os.environ and not any("::" in name for name in config.args):
-        others = [item for item in items if item.get_closest_marker("shared") and not runs_here(item)]
-        config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if item not in others]
+        leave_to_other_blenders(config, items)
 
 
-def runs_here(item: pytest.Item) -> bool:
-    """Whether this is the Blender that runs a shared test. The name decides, so that each runs on one of them."""
+def leave_to_other_blenders(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the shared tests of other Blenders. The name of a test decides, so that each runs on one of them."""
     import bpy
 
     table = tomllib.loads((ROOT / "tools/blender_versions.toml").read_text())
     versions = table[f"{sys.version_info.major}.{sys.version_info.minor}"]["blender"]
     here = ".".join(map(str, bpy.app.version))
-    number = int.from_bytes(hashlib.sha256(item.nodeid.encode()).digest(), "big")
-    return here not in versions or here == versions[number % len(versions)]
+    if here not in versions:
+        return
+    kept, others = list[pytest.Item](), list[pytest.Item]()
+    for item in items:
+        number = int.from_bytes(hashlib.sha256(item.nodeid.encode()).digest(), "big")
+        is_other = item.get_closest_marker("shared") and here != versions[number % len(versions)]
+        (others if is_other else kept).append(item)
+    config.hook.pytest_deselected(items=others)
+    items[:] = kept
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

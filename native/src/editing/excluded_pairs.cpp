@@ -143,6 +143,7 @@ void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, cons
 
 /// Takes the shallow pairs of parts that only touch.
 void ExcludedPairs::take_flush(const PositionsView& start) {
+  if (shallow_.empty()) return;
   const std::vector<Index> component = surface_->connected_components();
   const auto first_corner = [&](Index triangle) { return surface_->triangles()(triangle, 0); };
   const auto parts = [&](const std::pair<Index, Index>& pair) -> std::pair<Index, Index> {
