@@ -26,7 +26,7 @@ def unregistered():
 
 
 def save_balls(path, distance, size=0.7):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     ball = icosphere(2)
     for name, offset, factor in (("One", 0.0, 1.0), ("Two", distance, size)):
         data = bpy.data.meshes.new(name)

@@ -47,7 +47,7 @@ MOST = 100.0  # milliseconds
 
 def make_scene() -> None:
     """Create ball and wall as two objects, with the ball in Edit Mode and all its vertices selected."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     surface, positions, ball = ball_above_wall()
     first = ball[0]
     faces = np.asarray(surface.triangles)

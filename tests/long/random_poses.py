@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--drag", action="store_true")
     arguments, begin = parser.parse_args(), time.process_time()
     poses = arguments.poses
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     random, statuses, failures = np.random.default_rng(11), [], 0
     rig, body, obstacles = among_boxes()
     for number in range(poses):

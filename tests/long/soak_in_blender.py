@@ -33,7 +33,7 @@ SETTINGS = EditSettings(threads=1)
 
 def make_scene() -> None:
     """A wall, a cage below Subdivision Surface, and a ball in a lattice."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     building.add_grid("Wall", 24, size=12)
     building.add_modifier(building.add_cube("Cage", location=(-2, 0, 1.2)), "SUBSURF", levels=3)
     bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=4, radius=0.8, location=(2, 0, 1.2))

@@ -32,7 +32,7 @@ LONGEST = 80  # characters of a message in the status bar
 
 def judged(trial: Callable[[], Outcome]) -> Outcome:
     """The outcome of a trial in a new file; "raised" with the last lines of a traceback."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     try:
         return trial()
     except Exception:
@@ -60,7 +60,7 @@ def losses() -> list[str]:
     lost = []
     for name, make in STACKS.items():
         for way in WAYS:
-            bpy.ops.wm.read_factory_settings(use_empty=True)
+            bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
             kept, until_contact = kept_motion(make, way)
             print(f"{name}, {way}: kept {kept:.2f}, Blender's Move until contact {until_contact:.2f}", flush=True)
             if kept < until_contact - RESOLUTION:

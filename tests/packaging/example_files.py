@@ -34,7 +34,7 @@ def saved(name: str) -> None:
     """Save the scene, and start an empty one."""
     Path(name).parent.mkdir(exist_ok=True)
     bpy.ops.wm.save_as_mainfile(filepath=str(Path(name).absolute()))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
 def walk(name: str, height: float) -> None:
@@ -68,7 +68,7 @@ def shoots(name: str) -> None:
 
 def main(documents: Path) -> None:
     """Write all files."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     walk("assets/walk.blend", 2.0)
     walk("walk.blend", 0.8)
     overlapping("figure.blend", "Torso", "Arm")

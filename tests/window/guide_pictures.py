@@ -35,7 +35,10 @@ def guide_drag(window: Window) -> Steps:
     yield from start(window)
     window.key("X")
     yield from window.glide(window.pixel((1.9, 0.0, 0.0)))
+    bpy.context.preferences.system.viewport_aa = "8"
+    yield from window.next_draw()
     window.picture("guide_drag")
+    bpy.context.preferences.system.viewport_aa = "OFF"
     yield from click(window)
     expect_free(window)
 

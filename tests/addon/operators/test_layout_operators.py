@@ -17,7 +17,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture(autouse=True)
 def empty_scene() -> None:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_plane_add(size=20)
     bpy.context.object.name = "Floor"
     bpy.context.scene.stiv.separation = 0.01

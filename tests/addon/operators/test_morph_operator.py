@@ -21,7 +21,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture
 def ball() -> Any:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     bpy.ops.mesh.primitive_plane_add(size=8, location=(2, 0, 0), rotation=(0, np.pi / 2, 0))
     bpy.ops.mesh.primitive_uv_sphere_add(radius=1, segments=16, ring_count=9)
     ball = bpy.context.object
@@ -226,7 +226,7 @@ def test_drags_of_several_keys_show_only_clear_values(ball: Any) -> None:
 
 def test_faces_that_cut_at_a_seam_torn_by_the_slider_are_named() -> None:
     """Two squares side by side, of which a key moves one across the other."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     places = [(x + side, y, 0) for side in (-1, 0) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
     data = bpy.data.meshes.new("Sheet")
     data.from_pydata(places, [], [range(4), range(4, 8)])

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 @pytest.fixture
 def rig() -> Any:
     """A character with a box below its left forearm."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     rig, _ = make_character(0.12)
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.ops.mesh.primitive_cube_add(size=0.6, location=(1.3, 0, 0.6))

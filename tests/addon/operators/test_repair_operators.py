@@ -26,7 +26,7 @@ pytestmark = pytest.mark.usefixtures("registered")
 
 @pytest.fixture(autouse=True)
 def empty_scene() -> None:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
 def add(name: str, vertices: Any, faces: Any, location: Any = (0, 0, 0), select: bool = True) -> Any:

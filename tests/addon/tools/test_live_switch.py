@@ -28,7 +28,7 @@ def keymap() -> None:
 
 @pytest.fixture
 def addon() -> Iterator[None]:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     stiv_addon.register()
     try:
         yield

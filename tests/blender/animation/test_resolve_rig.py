@@ -120,7 +120,7 @@ def split_meshes() -> None:
 def test_a_split_mesh_is_corrected_like_the_whole_one(tmp_path: Path, region: str) -> None:
     turned = []
     for is_split in (False, True):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         make_clip("walk")
         if is_split:
             split_meshes()
@@ -317,7 +317,7 @@ def test_a_linked_rig_without_an_override_is_refused(tmp_path: Path, capsys) -> 
     swinging_bar()
     library = tmp_path / "library.blend"
     save_blend(library)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     with bpy.data.libraries.load(str(library), link=True) as (_, linked):
         linked.objects = ["Rig", "Bar", "Box"]
     for ob in linked.objects:

@@ -55,7 +55,7 @@ def keyed(owner: Any) -> set[tuple[str, int]]:
 def test_the_same_properties_are_keyed_as_by_blender(choice: str, make: Any) -> None:
     found = []
     for move in (lambda owner: bpy.ops.transform.translate(value=SHIFT), move_and_key):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         owner = make()
         choose(**CHOICES[choice])
         move(owner)

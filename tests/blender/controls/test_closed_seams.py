@@ -62,7 +62,7 @@ def widest_gap(ob: Any, start: np.ndarray) -> float:
 
 def posed(is_split: bool, kind: str = "rotate", **settings: Any) -> tuple[Any, BlenderEdit, stiv.EditResult, float]:
     """A character whose left arm turns down, until a box or its own body stops it: body, edit, result and angle."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     rig, body = make_character(0.1)
     if is_split:
         split(body)
@@ -93,7 +93,7 @@ def test_a_split_character_is_posed_like_the_whole_one(without_box: bool) -> Non
 def test_a_split_shirt_that_yields_to_a_pose_stays_closed() -> None:
     found = []
     for is_split in (False, True):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         rig, _ = make_character(0.14)
         plate = add_grid("Plate", 6, 0.5, (1.3, 0, 0.9))
         start = evaluated(plate)
@@ -226,7 +226,7 @@ def drag_turn(edit: BlenderEdit, angle: float) -> stiv.EditResult:
 def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
     """Its faces are then apart, as those of seams that open at once; Esc restores the start."""
     for moved, count in ((PARTING, 0), (CROSSING, 2)):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         sheet, bone = sheet_that_opens(moved)
         start = evaluated(sheet)
         edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
@@ -245,7 +245,7 @@ def test_a_pose_continues_where_a_seam_opens_late(move: Any) -> None:
 def test_a_drag_that_is_cancelled_where_a_seam_opens_keeps_the_shown_state() -> None:
     """At each of its steps, also while a session with open seams is made."""
     for before in range(100):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         _, bone = sheet_that_opens(PARTING)
         edit = BlenderEdit.begin(bpy.context, EditSettings(separation=0.001), "rotate")
         drag_turn(edit, 0.1)

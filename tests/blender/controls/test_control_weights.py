@@ -81,7 +81,7 @@ def test_less_weight_yields_less() -> None:
     """Two square cages, pushed equally into a floor, respond by their weights."""
     depths = []
     for weight in (1.0, 0.01):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         add_grid("Floor", 3, 4.0)
         sheet = add_grid("Sheet", 2, location=(0, 0, 0.5))
         group(sheet, "Weights", {number: weight if number % 3 == 1 else 1.0 for number in range(9)})

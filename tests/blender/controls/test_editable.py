@@ -133,7 +133,7 @@ def test_linked_and_overridden_data(tmp_path: Path) -> None:
     cube = add_cube("Linked")
     path = str(tmp_path / "library ü.blend")
     bpy.data.libraries.write(path, {cube})
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.objects = ["Linked"]
     (linked,) = wanted.objects

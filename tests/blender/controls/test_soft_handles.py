@@ -192,7 +192,7 @@ def test_other_vertices_may_be_fixed() -> None:
 def test_weights_scale_the_stiffness_of_a_handle() -> None:
     moves = []
     for weight in (1.0, 0.1):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         ob = tube()
         group(ob, "Top", members(ob, "Top"), weight)
         select(ob)

@@ -36,7 +36,7 @@ def begin(**settings: Any) -> BlenderEdit:
 
 
 def fresh() -> None:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
 @pytest.mark.parametrize("mode", ["OBJECT", "EDIT"])

@@ -82,7 +82,7 @@ def test_a_child_of_a_turned_parent_keeps_its_locked_axes() -> None:
     """To the last bit, unless Blender's single-precision matrices cannot represent that; then to the nearest one."""
     exact = 0
     for seed in range(12):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         random, chosen = np.random.default_rng(seed), np.array(AXES[seed % len(AXES)])
         cube = child_below_turned_parent(random)
         start, edit = np.array(cube.matrix_world.translation), begin()

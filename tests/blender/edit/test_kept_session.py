@@ -39,7 +39,7 @@ def test_consecutive_edits_share_a_session_and_end_as_with_one_each() -> None:
         return second._solver.session is session, second.surface
 
     shared, together = heights(True)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     fresh, apart = heights(False)
     assert shared
     assert not fresh

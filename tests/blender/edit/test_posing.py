@@ -346,7 +346,7 @@ def test_folds_of_the_viewport_and_of_the_render_are_found_apart() -> None:
 def test_the_region_of_a_joint_is_adjustable() -> None:
     angles = []
     for region in (0.0, 1.2, 2.0):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         rig, _, box = box_below_hand()
         bpy.data.objects.remove(box)
         select_bones(rig, "Forearm.L")

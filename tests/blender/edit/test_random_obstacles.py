@@ -84,7 +84,7 @@ def relate(ob: Any, before: Sequence[Any]) -> None:
 def build(seed: int, may_be_followed: bool = True) -> tuple[Any, list[Any]]:
     """The object to be moved, and all others."""
     random.seed(seed)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     collection = bpy.data.collections.new("Shown")
     member = add_cube("Member", vector(9), 0.5)
     collection.objects.link(member)

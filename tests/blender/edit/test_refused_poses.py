@@ -132,7 +132,7 @@ def test_connected_bones_cannot_move() -> None:
 def test_a_linked_rig_without_an_override_is_refused(tmp_path: Any) -> None:
     rig, _, _ = box_below_hand()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "character.blend"))
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     with bpy.data.libraries.load(str(tmp_path / "character.blend"), link=True) as (source, wanted):
         wanted.objects = source.objects
     for ob in wanted.objects:

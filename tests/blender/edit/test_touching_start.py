@@ -152,7 +152,7 @@ def test_an_axis_keeps_the_others() -> None:
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=15)
 @given(st.integers(0, 2**32 - 1))
 def test_crates_flush_with_each_other_in_any_direction(seed: int) -> None:
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     chance = np.random.default_rng(seed)
     angles, place, (x, y) = chance.uniform(-3, 3, 3), chance.uniform(-5, 5, 3), chance.uniform(-0.9, 0.9, 2)
     rest = add_cube("Rest", place, rotation_euler=angles)

@@ -63,7 +63,7 @@ def test_steps_give_the_result_of_the_synchronous_call(change: Callable[[Any], N
     outcome = finish(task_of(accepted))
     state = snapshot()
     assert outcome.wrote and check_scene(bpy.context).pairs == ()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     accepted, _ = accepted_then_changed(change)
     assert guard_result(bpy.context, EditSettings(), accepted) == outcome
     assert snapshot() == state
@@ -73,7 +73,7 @@ def test_steps_give_the_result_of_the_synchronous_call(change: Callable[[Any], N
 def test_closed_steps_leave_the_tools_result_exactly(change: Callable[[Any], None]) -> None:
     """Wherever they are."""
     for steps in MOMENTS:
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         accepted, changed = accepted_then_changed(change)
         task = task_of(accepted)
         if take_steps(task, steps):
@@ -123,7 +123,7 @@ def test_a_scene_shows_the_accepted_state_while_a_correction_solves() -> None:
 
 def changed_users() -> AcceptedScene:
     """A stroke on a mesh with users of different modifiers, each of which Blender evaluates on a copy."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     add_cube("Wall", (WALL + 0.5, 0, 0), 1.0, scale=(0.5, 4, 4))
     grid = add_grid("Grid", 4)
     for number in range(1, 5):

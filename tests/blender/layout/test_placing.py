@@ -52,7 +52,7 @@ def test_a_crowded_surface_takes_fewer_and_says_so() -> None:
 def test_the_same_seed_gives_the_same_copies_and_data_can_be_its_own() -> None:
     places = []
     for _ in range(2):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         ground, stone = hill(), add_cube("Stone", (20, 0, 0), 0.3)
         select(stone, ground)
         copies = place(bpy.context, PlaceSettings(EDIT, count=4, seed=9, linked=False)).changed

@@ -23,7 +23,7 @@ from stiv.blender.scene.face_pairs import find_face_pairs
 @lru_cache(maxsize=1)
 def some_meshes() -> Assembly:
     """Faces of one to five triangles, a mesh that occurs twice, and loose vertices inside another mesh."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     angles = np.linspace(0, 2 * np.pi, 7, endpoint=False)
     disc = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
     add("Disc", mesh("Disc", disc, [tuple(range(7))]))

@@ -16,7 +16,7 @@ from stiv.blender.scene.obstacle_choice import find_obstacles
 @pytest.fixture(autouse=True)
 def every_scene_is_large(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(obstacle_choice, "MIN_FACES", 0)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
 
 
 def obstacles(*moving: Any, reshaped: Collection[str] = (), settings: EditSettings = EditSettings()) -> set[str]:  # noqa: B008 (frozen)

@@ -81,7 +81,7 @@ def add_relations(ob: Any, before: Sequence[Any]) -> None:
 def build(seed: int) -> list[Any]:
     """The meshes of a random scene."""
     random.seed(seed)
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     lattice = add_lattice("Lattice", (2, 2, 2), vector(2), scale=(3, 3, 3))
     lattice.data.points[0].co_deform = (-1.0, -0.2, -0.1)
     objects = [add_cube(name, vector(4)) for name in "ABCDE"] + [add_rig(), lattice, add("Empty", None, vector(3))]

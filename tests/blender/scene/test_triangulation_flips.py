@@ -153,7 +153,7 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
     """Of a path whose end cannot be solved again. It may take seconds, in which the window draws the scene."""
     found = {}
     for is_cancelled in (False, True):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         quad = add_quad(0)
         add_post()
         edit = begin_with_wings(quad)
@@ -172,7 +172,7 @@ def test_a_search_for_an_older_state_shows_the_last_written_state_and_ends_when_
 def test_a_write_that_is_cancelled_ends_at_a_state_that_passes() -> None:
     """At any time: while a session with the flipped triangles is made, while it solves, or in the search."""
     for before in range(100):
-        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
         quad = add_quad(0)
         add_post()
         edit = begin_with_wings(quad)
