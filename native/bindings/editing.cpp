@@ -266,6 +266,7 @@ void bind_options(py::module_& module) {
       .def_readwrite("exclude", &EditOptions::excluded)
       .def_readwrite("parts_may_cut", &EditOptions::parts_may_cut)
       .def_readwrite("overlapping", &EditOptions::overlapping)
+      .def_readwrite("touching", &EditOptions::touching)
       .def_readwrite("constraints", &EditOptions::constraints)
       .def_readwrite("solver", &EditOptions::solver)
       .def_readwrite("metric", &EditOptions::metric)

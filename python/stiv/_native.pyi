@@ -296,6 +296,7 @@ class EditOptions:
     storage: Sequence[StorageFrame]
     threads: int
     time_budget: float
+    touching: Sequence[int]
     weight_axes: Sequence[Annotated[ArrayLike, float64, "[3, 3]"]]
     weights: Annotated[ArrayLike, float64, "[m, 1]"]
 

@@ -76,6 +76,10 @@ def _body_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
     return [(int(a), int(b)) for a, b in pairs]
 
 
+def _bodies(bodies: Sequence[int]) -> list[int]:
+    return [int(body) for body in bodies]
+
+
 def _choice(default: str, name: str, choices: type[Enum]) -> Any:
     """Return a field whose value names a member of an enum of the core."""
     return field(default=default, metadata={"convert": partial(as_choice, name=name, choices=choices)})
@@ -125,6 +129,9 @@ class EditOptions(SharedOptions):
     #: pairs of bodies, by name or number, that may overlap, but no more than at the start. They can part in any
     #: direction, and are guarded once they are apart. "intersecting": all pairs of bodies that do at the start
     overlapping: Sequence[tuple[str | int, str | int]] | str = field(default=(), metadata={"convert": _body_pairs})
+    #: bodies, by name or number, that move together: two of them that only touch at the start may slide, part and
+    #: touch, but never intersect deeper than rounding. One of the two must be closed
+    touching: Sequence[str | int] = field(default=(), metadata={"convert": _bodies})
     #: "lcp": contacts only push; "linear": they also pull, and each round starts without constraints
     solver: str = _choice("lcp", "solver", _native.ConstraintSolver)
     #: norm that a step minimizes: "energy", of the motion of the surface; "controls", of the controls [Algorithm 1]
@@ -254,4 +261,5 @@ def with_numbers(
         pair_separations=separations,
         exclude=_excluded(options.exclude, surface, start),
         overlapping=_overlapping(options.overlapping, surface, start),
+        touching=[_body_number(body, [each.name for each in surface.bodies]) for body in options.touching],
     )

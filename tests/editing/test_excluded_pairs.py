@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from oracles.parting import parting_motion
 
 import stiv
 from blend_fixtures.scenes.primitives import box, grid, icosphere, triangulated
@@ -178,16 +179,6 @@ def test_faces_that_touch_do_not_keep_their_mesh_from_moving(seed: int) -> None:
     assert changed
 
 
-def parting_motion(one: np.ndarray, other: np.ndarray) -> float:
-    """The shortest motion that parts two triangles, (3, 3) each, by separating axes."""
-    sides = [np.roll(each, -1, axis=0) - each for each in (one, other)]
-    normals = [np.cross(each[0], each[1]) for each in sides]
-    axes = [*normals, *(np.cross(a, b) for a in sides[0] for b in sides[1])]
-    axes += [np.cross(n, side) for n, each in zip(normals, sides, strict=True) for side in each]
-    directions = [axis / np.linalg.norm(axis) for axis in axes if np.linalg.norm(axis) > 1e-12]
-    return min(min((one @ d).max() - (other @ d).min(), (other @ d).max() - (one @ d).min()) for d in directions)
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_faces_that_touch_are_not_pressed_through_each_other(seed: int) -> None:
     surface, start, patch = layers_in_a_tilted_plane(seed, gap=3e-7)
@@ -219,12 +210,23 @@ FLUSH = {
 }
 
 
-def session_of_flush_boxes(place: str) -> tuple[stiv.EditSession, np.ndarray]:
+OF = ["one body", "two bodies"]
+
+
+def session_of_flush_boxes(place: str, of: str) -> tuple[stiv.EditSession, np.ndarray]:
     triangles, start = flush_boxes(*FLUSH[place])
     assert len(stiv.find_intersections(start, triangles)) > 0
     frame = stiv.StorageFrame(0, len(start), np.eye(4))
-    options = stiv.EditOptions(exclude="intersecting", storage=[frame])
-    return stiv.EditSession(triangles, stiv.identity(len(start)), start, options), triangles
+    if of == "one body":
+        options = stiv.EditOptions(exclude="intersecting", storage=[frame])
+        return stiv.EditSession(triangles, stiv.identity(len(start)), start, options), triangles
+    options = stiv.EditOptions(touching=["cube", "beside"], storage=[frame])
+    return stiv.EditSession(two_bodies(triangles), stiv.identity(len(start)), start, options), triangles
+
+
+def two_bodies(triangles: np.ndarray) -> stiv.Surface:
+    bodies = [stiv.Body("cube"), stiv.Body("beside")]
+    return stiv.Surface(triangles, 16, vertex_body=np.repeat([0, 1], 8), bodies=bodies)
 
 
 def deepest(q: np.ndarray, triangles: np.ndarray) -> float:
@@ -237,10 +239,11 @@ def deepest(q: np.ndarray, triangles: np.ndarray) -> float:
 STORED = 16 * 2.0**-22  # rounding of coordinates below 4, as four times the least separation
 
 
+@pytest.mark.parametrize("of", OF)
 @pytest.mark.parametrize("place", FLUSH)
 @pytest.mark.parametrize("seed", range(6))
-def test_parts_that_only_touch_never_cut_each_other(place: str, seed: int) -> None:
-    (session, triangles), chance = session_of_flush_boxes(place), np.random.default_rng(seed)
+def test_parts_that_only_touch_never_cut_each_other(place: str, seed: int, of: str) -> None:
+    (session, triangles), chance = session_of_flush_boxes(place, of), np.random.default_rng(seed)
     for _ in range(4):
         goal = session.controls
         chosen = slice(8, 16) if chance.random() < 0.5 else [int(chance.integers(16))]
@@ -249,11 +252,12 @@ def test_parts_that_only_touch_never_cut_each_other(place: str, seed: int) -> No
         assert deepest(session.surface, triangles) < STORED
 
 
+@pytest.mark.parametrize("of", OF)
 @pytest.mark.parametrize("place", FLUSH)
-def test_parts_that_only_touch_part_slide_and_move_together(place: str) -> None:
+def test_parts_that_only_touch_part_slide_and_move_together(place: str, of: str) -> None:
     out = np.array([0.3, 0.0, 0.1 if place == "along an edge" else 0.0])
     for motion, moving in ((out, slice(8, 16)), (np.array([0.0, 0.2, 0.0]), slice(8, 16)), (out, slice(0, 16))):
-        session, triangles = session_of_flush_boxes(place)
+        session, triangles = session_of_flush_boxes(place, of)
         goal = session.controls
         goal[moving] += motion
         session.edit(goal)
@@ -261,14 +265,65 @@ def test_parts_that_only_touch_part_slide_and_move_together(place: str) -> None:
         assert deepest(session.surface, triangles) < STORED
 
 
-def test_a_part_slides_along_the_side_that_it_is_pressed_into() -> None:
-    session, _ = session_of_flush_boxes("inside a side")
+@pytest.mark.parametrize("of", OF)
+def test_a_part_slides_along_the_side_that_it_is_pressed_into(of: str) -> None:
+    session, _ = session_of_flush_boxes("inside a side", of)
     session.set_weights(np.repeat([0.0, 1.0], 8))  # the cube is pinned
     goal = session.controls
     touches = (goal[:, 0] == 1) & (np.arange(16) >= 8)
     goal[8:] += (-0.2, 0.1, 0.2)
     session.edit(goal)
     np.testing.assert_allclose(session.controls - goal, np.outer(touches, (0.2, 0, 0)), atol=1e-3)
+
+
+def turned(points: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Points turned by a rotation vector (Rodrigues)."""
+    angle = np.linalg.norm(vector)
+    x, y, z = vector / angle
+    cross = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)])
+    return points @ (np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross).T
+
+
+@pytest.mark.parametrize("place", FLUSH)
+@pytest.mark.parametrize("seed", range(10))
+def test_bodies_that_touch_turn_together_wherever_rounding_puts_them(place: str, seed: int) -> None:
+    """In some directions they intersect at the start, in others they are apart."""
+    triangles, boxes = flush_boxes(*FLUSH[place])
+    chance = np.random.default_rng(seed)
+    start = turned(boxes, chance.normal(size=3)).astype(np.float32).astype(float)
+    options = stiv.EditOptions(touching=[0, 1])
+    session = stiv.EditSession(two_bodies(triangles), stiv.identity(16), start, options)
+    for _ in range(3):
+        goal = turned(session.controls, chance.normal(scale=0.1, size=3)).astype(np.float32)
+        result = session.edit(goal)
+        assert result.status == "reached" and result.rounds == 0
+        assert deepest(result.surface, triangles) < STORED
+
+
+def test_bodies_that_cut_each_other_do_not_only_touch() -> None:
+    triangles, start = flush_boxes((0.999, 0.25, 0.25), (1, 0.5, 0.5))
+    with pytest.raises(stiv.StartIntersectsError):
+        stiv.EditSession(two_bodies(triangles), stiv.identity(16), start, stiv.EditOptions(touching=[0, 1]))
+
+
+def test_of_bodies_that_touch_one_is_closed() -> None:
+    """Two sheets in contact have no other faces that would keep them from passing through each other."""
+    sheet = triangulated(grid(2, 2, 1, 1))
+    for other, count in ((sheet.moved((0, 0, 1e-8)), 0), (triangulated(box(1, (1, 1, 1))).moved((0, 0, 0.5)), 1)):
+        whole = joined([sheet, other])
+        owner = np.repeat([0, 1], [len(sheet.vertices), len(other.vertices)])
+        surface = stiv.Surface(
+            whole.triangles(), len(owner), vertex_body=owner, bodies=[stiv.Body("a"), stiv.Body("b")]
+        )
+        options = stiv.EditOptions(touching=[0, 1])
+        session = stiv.EditSession(surface, stiv.identity(len(owner)), whole.vertices, options)
+        assert (len(session.excluded) > 0) == count
+
+
+def test_bodies_that_may_touch_must_exist() -> None:
+    triangles, start = flush_boxes(*FLUSH["whole sides"])
+    with pytest.raises(stiv.InputError, match="touching: 2 is not one of the 2 bodies"):
+        stiv.EditSession(two_bodies(triangles), stiv.identity(16), start, stiv.EditOptions(touching=[2]))
 
 
 @pytest.mark.parametrize("place, size", [((0, 0, 0), (1, 1, 1)), ((0.25, 0.25, 0), (0.5, 0.5, 0.5))])

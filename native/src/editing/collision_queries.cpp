@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "acceptance/intersection/near_pairs.hpp"
 #include "editing/validation.hpp"
 #include "position_rows.hpp"
 #include "stiv/acceptance/step_check.hpp"
@@ -39,11 +40,14 @@ bool has_deviation_tests(const EditContext& context) {
 
 /// @param rows of the scene
 ExcludedPairs excluded_pairs(const EditContext& context, const Controls& start, SceneRows& rows, Execution& execution) {
-  const IndexPairs& given = context.options().excluded;
-  if (given.empty()) return {context.shared_surface(), {}, true, Positions(), context.least_separation(), execution};
+  const EditOptions& options = context.options();
+  ExcludedPairs::Given given{options.excluded, options.parts_may_cut, options.touching, {}};
+  for (const auto& [a, b] : options.overlapping) given.overlapping.push_back(std::minmax(a, b));
+  sort_unique(given.overlapping);
+  if (options.excluded.empty() && options.touching.empty())
+    return {context.shared_surface(), given, Positions(), context.least_separation(), execution};
   const Positions surface = context.surface_at(start, execution);
-  return {context.shared_surface(),   given,    context.options().parts_may_cut, rows.with_rest(surface),
-          context.least_separation(), execution};
+  return {context.shared_surface(), given, rows.with_rest(surface), context.least_separation(), execution};
 }
 
 }  // namespace
@@ -69,7 +73,7 @@ CollisionQueries::CollisionQueries(const EditContext& context, const Controls& s
       excluded_(excluded_pairs(context, start, start_, execution)),
       no_separations_(context.surface().bodies().size(), 0) {
   const EditOptions& options = context.options();
-  if (!excluded_.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());
+  if (!options.excluded.empty()) depth_.emplace(context.shared_surface(), options.excluded, context.least_separation());
   if (options.overlapping.empty()) return;
   overlap_.emplace(context.surface(), options.overlapping, context.least_separation());
   overlapping_.assign(overlap_->pairs().size(), 0);
@@ -237,7 +241,8 @@ bool CollisionQueries::passes_static_test(const Positions& from, const Positions
   found.faces = excluded_.others(found.faces, end);
   if (!found.empty()) return false;
   const IntersectionCount intersecting = excluded_.count(all, end);
-  if (excluded_.are_more(intersecting, intersecting_at(from, execution)) || depth_->is_deeper(end, all)) return false;
+  if (excluded_.are_more(intersecting, intersecting_at(from, execution))) return false;
+  if (depth_ && depth_->is_deeper(end, all)) return false;
   intersecting_ = {to, intersecting};
   return true;
 }
@@ -272,7 +277,7 @@ bool CollisionQueries::is_end_free(const PositionsView& from, const PositionsVie
 }
 
 std::shared_ptr<const DeviationTest> CollisionQueries::deviation_test(const PositionsView& accepted) const {
-  return guard_->intersections.deviation_test(accepted);
+  return excluded_.empty() ? guard_->intersections.deviation_test(accepted) : nullptr;
 }
 
 }  // namespace stiv

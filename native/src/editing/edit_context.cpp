@@ -66,6 +66,7 @@ EditContext::EditContext(std::shared_ptr<const Surface> surface, Positions obsta
       revision_(deformation_->revision()),
       metric_(metric_of(*deformation_, options_)) {
   check_overlapping(*surface_, options_.overlapping);
+  check_touching(*surface_, options_.touching);
   check_controls(start, "controls");
   const Positions q = deformation_->surface_in_range(start, execution);
   check_positions(q, execution);

@@ -75,16 +75,6 @@ struct PlacedTriangles {
   }
 };
 
-/// For each vertex, whether its connected component has no boundary.
-std::vector<unsigned char> in_closed_components(const Surface& surface, const std::vector<Index>& component) {
-  std::vector<std::array<Index, 3>> triangles;
-  for (const auto& corners : surface.triangles().rowwise()) triangles.push_back({corners[0], corners[1], corners[2]});
-  std::vector<unsigned char> closed(component.size(), 1);  // by the first vertex of each component, then by vertex
-  for (const auto& edge : boundary_edges(triangles)) closed[at(component[at(edge[0])])] = 0;
-  for (std::size_t vertex = 0; vertex < component.size(); ++vertex) closed[vertex] = closed[at(component[vertex])];
-  return closed;
-}
-
 /// Whether all corners of two triangles move by the same displacement, up to a tolerance.
 bool move_together(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& start,
                    const PositionsView& end, double tolerance) {
@@ -112,11 +102,57 @@ Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::arra
 
 }  // namespace
 
-ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, bool parts_may_cut,
-                             const PositionsView& start, double least, Execution& execution)
+/// The connected components of a surface.
+class ExcludedPairs::SurfaceParts {
+ public:
+  explicit SurfaceParts(const Surface& surface) : surface_(surface), component_(surface.connected_components()) {}
+
+  /// The components of two triangles, smaller number first.
+  std::pair<Index, Index> of(const std::pair<Index, Index>& pair) const {
+    return std::minmax(component_[at(first_corner(pair.first))], component_[at(first_corner(pair.second))]);
+  }
+
+  bool are_of_one_body(const std::pair<Index, Index>& pair) const {
+    return surface_.body_of(first_corner(pair.first)) == surface_.body_of(first_corner(pair.second));
+  }
+
+  /// How many of the components of two triangles have no boundary.
+  int closed_count(const std::pair<Index, Index>& pair) {
+    if (closed_.empty()) find_closed();
+    return closed_[at(first_corner(pair.first))] + closed_[at(first_corner(pair.second))];
+  }
+
+ private:
+  Index first_corner(Index triangle) const { return surface_.triangles()(triangle, 0); }
+
+  void find_closed() {
+    std::vector<std::array<Index, 3>> triangles;
+    for (const auto& corners : surface_.triangles().rowwise())
+      triangles.push_back({corners[0], corners[1], corners[2]});
+    closed_.assign(component_.size(), 1);  // by the first vertex of each component, then by vertex
+    for (const auto& edge : boundary_edges(triangles)) closed_[at(component_[at(edge[0])])] = 0;
+    for (std::size_t vertex = 0; vertex < closed_.size(); ++vertex) closed_[vertex] = closed_[at(component_[vertex])];
+  }
+
+  const Surface& surface_;
+  std::vector<Index> component_;       // of each vertex: its first vertex
+  std::vector<unsigned char> closed_;  // whether that of each vertex has no boundary; empty until it is needed
+};
+
+ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Given& given, const PositionsView& start,
+                             double least, Execution& execution)
     : surface_(std::move(surface)), least_(least) {
-  const IndexPairs given = checked(pairs, static_cast<Index>(surface_->triangles().rows()));
-  if (given.empty()) return;
+  const IndexPairs pairs = checked(given.pairs, static_cast<Index>(surface_->triangles().rows()));
+  bodies_ = bodies_of(pairs);
+  take_given(pairs, given.parts_may_cut, start);
+  take_contacts(given, start, execution);
+  if (pairs_.empty() && flush_.empty()) return;
+  list_triangles_around_vertices();
+  add_touching(start);
+  find_others_that_touch(start, execution);
+}
+
+void ExcludedPairs::list_triangles_around_vertices() {
   around_.resize(static_cast<std::size_t>(surface_->vertex_count()));
   const Triangles& triangles = surface_->triangles();
   for (Index triangle = 0; triangle < static_cast<Index>(triangles.rows()); ++triangle)
@@ -125,10 +161,6 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Index
       if (around.empty() || around.back() != triangle)
         around.push_back(triangle);  // once, even if the triangle is degenerate
     }
-  bodies_ = bodies_of(given);
-  take_given(given, parts_may_cut, start);
-  add_touching(start);
-  find_others_that_touch(start, execution);
 }
 
 /// Divides the given pairs by their depth, and by whether their parts only touch.
@@ -144,37 +176,48 @@ void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, cons
 /// Takes the shallow pairs of parts that only touch.
 void ExcludedPairs::take_flush(const PositionsView& start) {
   if (shallow_.empty()) return;
-  const std::vector<Index> component = surface_->connected_components();
-  const auto first_corner = [&](Index triangle) { return surface_->triangles()(triangle, 0); };
-  const auto parts = [&](const std::pair<Index, Index>& pair) -> std::pair<Index, Index> {
-    const auto part = [&](Index triangle) { return component[at(first_corner(triangle))]; };
-    return std::minmax(part(pair.first), part(pair.second));
-  };
+  SurfaceParts parts(*surface_);
   IndexPairs cutting;
-  for (const auto& pair : deep_) cutting.push_back(parts(pair));
-  for (const auto& pair : pairs_inside(component, start)) cutting.push_back(parts(pair));
+  for (const auto& pair : deep_) cutting.push_back(parts.of(pair));
+  for (const auto& pair : pairs_inside(shallow_, parts, start)) cutting.push_back(parts.of(pair));
   sort_unique(cutting);
   const auto is_flush = [&](const std::pair<Index, Index>& pair) {
-    return surface_->body_of(first_corner(pair.first)) == surface_->body_of(first_corner(pair.second)) &&
-           !std::binary_search(cutting.begin(), cutting.end(), parts(pair));
+    return parts.are_of_one_body(pair) && !std::binary_search(cutting.begin(), cutting.end(), parts.of(pair));
   };
   std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(flush_), is_flush);
   std::erase_if(shallow_, is_flush);
 }
 
-/// The shallow pairs in one plane with the insides of both parts on the same side of it: these lie in each other, such
-/// as a mirrored copy in place of the original. Without an inside, only equal triangles do.
-IndexPairs ExcludedPairs::pairs_inside(const std::vector<Index>& component, const PositionsView& start) const {
+/// Takes the pairs of bodies that may touch, where parts of them only touch. One is closed: of two sheets, none would
+/// be guarded by the faces on its other side.
+void ExcludedPairs::take_contacts(const Given& given, const PositionsView& start, Execution& execution) {
+  IndexPairs bodies = bodies_within_reach(*surface_, given.touching, start, rounding());
+  std::erase_if(bodies, [&](const auto& pair) { return is_among(given.overlapping, pair.first, pair.second); });
+  if (bodies.empty()) return;
+  const IndexPairs contacts = find_contacts(surface_, bodies, start, rounding(), execution);
+  if (contacts.empty()) return;
+  const PlacedTriangles placed{surface_->triangles(), start};
+  SurfaceParts parts(*surface_);
+  IndexPairs cutting;
+  for (const auto& pair : contacts)
+    if (parts.closed_count(pair) == 0 || placed.depth(pair.first, pair.second) >= rounding())
+      cutting.push_back(parts.of(pair));
+  for (const auto& pair : pairs_inside(contacts, parts, start)) cutting.push_back(parts.of(pair));
+  sort_unique(cutting);
+  std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(flush_),
+               [&](const auto& pair) { return !std::binary_search(cutting.begin(), cutting.end(), parts.of(pair)); });
+  std::sort(flush_.begin(), flush_.end());
+}
+
+/// The pairs in one plane with the insides of both parts on the same side of it: these lie in each other, such as a
+/// mirrored copy in place of the original. Without an inside, only equal triangles do.
+IndexPairs ExcludedPairs::pairs_inside(const IndexPairs& pairs, SurfaceParts& parts, const PositionsView& start) const {
   const PlacedTriangles placed{surface_->triangles(), start};
   IndexPairs found;
-  std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(found),
+  std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(found),
                [&](const auto& pair) { return placed.overlap_in_plane(pair.first, pair.second, rounding()); });
-  if (found.empty()) return found;
-  const std::vector<unsigned char> closed = in_closed_components(*surface_, component);
-  const auto is_closed = [&](Index triangle) { return closed[at(surface_->triangles()(triangle, 0))] != 0; };
   std::erase_if(found, [&](const auto& pair) {
-    const auto& [a, b] = pair;
-    return !(is_closed(a) && is_closed(b)) && !placed.coincide(a, b);
+    return parts.closed_count(pair) < 2 && !placed.coincide(pair.first, pair.second);
   });
   return found;
 }

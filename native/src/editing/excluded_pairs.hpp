@@ -21,20 +21,28 @@ struct IntersectionCount {
 /// Pairs of triangles that may intersect: the given ones, pairs next to them that touch, and other pairs of the same
 /// bodies that touch, which may intersect no deeper than rounding. The same holds for given pairs of one body whose
 /// parts only touch: those of two connected components, or of one, without a pair that is deeper at the start, or in
-/// one plane with both insides on the same side. An event belongs to every pair of a triangle at its first side and one
-/// at its second. It is ignored only if each of these pairs is excluded, so that all other pairs stay guarded.
-/// (mathematics.md, "Excluded pairs")
+/// one plane with both insides on the same side. Pairs of two bodies that may touch are excluded in the same way, if
+/// both parts are closed. An event belongs to every pair of a triangle at its first side and one at its second. It is
+/// ignored only if each of these pairs is excluded, so that all other pairs stay guarded. (mathematics.md, "Excluded
+/// pairs")
 class ExcludedPairs {
  public:
+  /// Pairs and bodies that an edit excludes.
+  struct Given {
+    IndexPairs pairs;
+    bool parts_may_cut = false;   ///< no parts of a body count as only touching
+    std::vector<Index> touching;  ///< bodies that may touch each other
+    IndexPairs overlapping;       ///< pairs of bodies, smaller number first, sorted, that may not count as touching
+  };
+
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
   /// storing. Where a curve of intersection passes an edge so closely, it cannot be kept on its side of the edge. Only
   /// neighbors of the triangles of a given pair may intersect deeper. No pair that intersects at the start is added.
-  /// @param parts_may_cut no parts count as only touching
   /// @param start of all vertices, as stored: rounding decides whether faces that touch intersect, so positions that
   /// are moved to another origin would count as others
   /// @throws InputError: a triangle out of range, or a triangle with itself
-  ExcludedPairs(std::shared_ptr<const Surface> surface, const IndexPairs& pairs, bool parts_may_cut,
-                const PositionsView& start, double least, Execution& execution);
+  ExcludedPairs(std::shared_ptr<const Surface> surface, const Given& given, const PositionsView& start, double least,
+                Execution& execution);
 
   bool empty() const { return all_.empty(); }
   const IndexPairs& pairs() const { return all_; }  ///< sorted, with the smaller index first
@@ -62,11 +70,15 @@ class ExcludedPairs {
   bool are_more(const IntersectionCount& now, const IntersectionCount& before) const;
 
  private:
+  class SurfaceParts;
+
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
   void take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start);
   void take_flush(const PositionsView& start);
-  IndexPairs pairs_inside(const std::vector<Index>& component, const PositionsView& start) const;
+  void take_contacts(const Given& given, const PositionsView& start, Execution& execution);
+  void list_triangles_around_vertices();
+  IndexPairs pairs_inside(const IndexPairs& pairs, SurfaceParts& parts, const PositionsView& start) const;
   void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);
@@ -79,7 +91,7 @@ class ExcludedPairs {
   IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
   IndexPairs pairs_;                        // without limits
   IndexPairs deep_, shallow_;               // those that intersect at the start, shallow: no deeper than rounding
-  IndexPairs flush_;                        // given pairs of parts that only touch
+  IndexPairs flush_;                        // pairs of parts that only touch: given ones, and those of two bodies
   IndexPairs shallow_only_;                 // these, and others that touch: never deeper than rounding
   IndexPairs all_;                          // all of these
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs

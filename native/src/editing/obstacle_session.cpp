@@ -37,6 +37,7 @@ void check_without_obstacles(const EditOptions& options, const Surface& surface)
       throw InputError("exclude: triangle " + std::to_string(std::max(a, b)) + " is not one of the surface's " +
                        std::to_string(triangles) + "; pairs with obstacles cannot be excluded");
   check_overlapping(surface, options.overlapping);
+  check_touching(surface, options.touching);
 }
 
 std::vector<Index> named_bodies(const EditOptions& options, std::size_t bodies) {

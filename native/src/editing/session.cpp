@@ -253,7 +253,7 @@ class SurfaceSession final : public SessionImplementation {
   bool can_edit_from_start(const EditCall& call, const Aim& aim) const {
     const EditOptions& options = context_.options();
     const bool may_differ = options.max_sub_edits > 1 && accepted_.controls != context_.stored(aim.controls);
-    const bool may_return = options.excluded.empty() && options.overlapping.empty() && trail_.is_known();
+    const bool may_return = queries_.excluded().empty() && options.overlapping.empty() && trail_.is_known();
     return may_differ && may_return && context_.deformation().rotation_rows().empty() &&
            !call.execution.has_time_budget() && trail_.is_straight(aim.controls, context_.pull_distance()) &&
            !moves_pinned_controls(options, trail_.start(), aim.controls);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/surface.hpp"
@@ -14,5 +15,14 @@ namespace stiv {
 /// @param bodies pairs of bodies, smaller index first, sorted; other pairs are left out
 IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
                          const PositionsView& q, double distance, Execution& execution);
+
+/// The pairs of triangles of `find_touching`, and those that intersect.
+IndexPairs find_contacts(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
+                         const PositionsView& q, double distance, Execution& execution);
+
+/// The pairs of some bodies, smaller number first, sorted, that are tested against each other, and whose boxes are no
+/// further apart than a distance.
+IndexPairs bodies_within_reach(const Surface& surface, const std::vector<Index>& bodies, const PositionsView& q,
+                               double distance);
 
 }  // namespace stiv

@@ -90,6 +90,13 @@ void check_overlapping(const Surface& surface, const std::vector<std::pair<Index
                                                                          std::to_string(count) + " bodies");
 }
 
+void check_touching(const Surface& surface, const std::vector<Index>& touching) {
+  const auto count = static_cast<Index>(surface.bodies().size());
+  for (const Index body : touching)
+    require(body >= 0 && body < count,
+            "touching: " + std::to_string(body) + " is not one of the " + std::to_string(count) + " bodies");
+}
+
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control) {
   const std::vector<Index> support = deformation.support(control);
   std::string name = "control " + std::to_string(control);

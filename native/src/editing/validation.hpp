@@ -15,6 +15,7 @@ namespace stiv {
 void check_fit(const Surface& surface, const Deformation& deformation, Index obstacle_vertices = 0);
 void check_options(const EditOptions& options, Index control_count);
 void check_overlapping(const Surface& surface, const std::vector<std::pair<Index, Index>>& overlapping);
+void check_touching(const Surface& surface, const std::vector<Index>& touching);
 
 /// "object "X", control 7": of the first vertex that the control moves.
 std::string describe_control(const Surface& surface, const Deformation& deformation, Index control);

@@ -74,8 +74,19 @@ def session_options(
         exclude=exclude,
         parts_may_cut=any(each.posed is not None for each in control_sets),  # skin folds at open seams
         overlapping=excluded_bodies(settings.excluded, assembly),
+        touching=_bodies_that_may_touch(assembly, control_sets),
         storage=frames,
     )
+
+
+def _bodies_that_may_touch(assembly: Assembly, control_sets: Sequence[ControlSet]) -> list[str | int]:
+    """The bodies that the goal moves, if there are several. Poses do not limit what touches."""
+    if any(each.posed is not None for each in control_sets):
+        return []
+    moving = {index for each in control_sets if each.rule.moves for index in each.surfaces}
+    starts = [assembly.starts[index] for index in moving if assembly.starts[index] < assembly.starts[index + 1]]
+    bodies = np.unique(assembly.surface.vertex_body[starts]).tolist() if starts else []
+    return bodies if len(bodies) > 1 else []
 
 
 def make_session(

@@ -19,9 +19,10 @@ from stiv.blender.edit.sessions import (
 )
 from stiv.blender.edit.snapshot import EditSnapshot
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
+from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded
+from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded, with_touching
 from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
@@ -37,6 +38,7 @@ class EditSolver:
 
     intersecting: the excluded pairs of the settings, and those at the start that needed no decision.
     excluded: the same with pairs beside them that touch at the start.
+    touching: pairs of different objects that only touch at the start, and move together.
     loose_part_notes: notes on loose edges and vertices that are left out.
     """
 
@@ -47,6 +49,7 @@ class EditSolver:
         self.control_sets = tuple(control_sets)
         self._settings = settings
         self.intersecting = self.excluded = settings.excluded
+        self.touching = Exclusions()
         self.loose_part_notes: tuple[str, ...] = ()
         self._session: stiv.EditSession | None = None
         self._inputs: SessionInputs | None = None  # of the session, if the next edit may use it
@@ -165,7 +168,7 @@ class EditSolver:
 
         def is_free(state: AcceptedState) -> bool:
             q = self.deformation.surface(state.controls)
-            return has_only_excluded(self.excluded, assembly, q, self._settings.threads)
+            return has_only_excluded(self.excluded, self.touching, assembly, q, self._settings.threads)
 
         state = yield from find_latest_steps(self.trail.states(), is_free, end)
         if state is None:
@@ -202,8 +205,9 @@ class EditSolver:
             self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)
         (self._session, self._deformation), self.assembly = opened, assembly
-        if len(self.excluded):
-            self.excluded = exclude_undecided(self.excluded, assembly, self.session.excluded, self._moving(assembly))
+        found = self.session.excluded
+        if len(found):
+            self.excluded, self.touching = with_touching(self.excluded, assembly, found, self._moving(assembly))
 
     def _make_session(
         self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats
@@ -224,7 +228,7 @@ class EditSolver:
 
     def keep_session(self) -> None:
         """Leave the session to the next edit. This solver must not be used any more."""
-        if self._session is not None and self._inputs is not None:
+        if self._session is not None and self._inputs is not None and not len(self.touching):
             weights = stacked_weights([each.weights for each in self.control_sets])
             options = replace(self._inputs.options, weights=weights, weight_axes=axes_of_all(self.control_sets))
             keep_session(replace(self._inputs, options=options), self._session, self.deformation)

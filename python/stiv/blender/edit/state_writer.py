@@ -203,7 +203,8 @@ class StateWriter:
         if message := self._watch.message(bpy.context, self._solver.assembly.obstacles):
             return Verification(False, (), message)
         near = self._near_of(accepted)
-        if self._verifier is None or not self._verifier.tests(near.assembly, self._solver.excluded):
+        excluded, touching = self._solver.excluded, self._solver.touching
+        if self._verifier is None or not self._verifier.tests(near.assembly, excluded, touching):
             self._verifier = self._new_verifier(near)
         return self._verifier.verify(bpy.context, near.extended(accepted))
 
@@ -222,7 +223,8 @@ class StateWriter:
         def is_step_free(start: Floats, end: Floats) -> bool:
             return self._solver.session.is_step_free(start[:count], end[:count])  # the session reads the obstacles
 
-        return Verifier(near.assembly, is_step_free, self._settings.threads, self._solver.excluded)
+        excluded, touching = self._solver.excluded, self._solver.touching
+        return Verifier(near.assembly, is_step_free, self._settings.threads, excluded, touching)
 
     @property
     def threads_beside(self) -> int:
@@ -236,11 +238,11 @@ class StateWriter:
         """
         if self._watch.message(bpy.context, self._solver.assembly.obstacles):
             return False
-        near, excluded = self._near_of(accepted), self._solver.excluded
-        if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded):
+        near, excluded, touching = self._near_of(accepted), self._solver.excluded, self._solver.touching
+        if self._verifier_beside is None or not self._verifier_beside.tests(near.assembly, excluded, touching):
             self._check_beside = None
             self._verifier_beside = Verifier(
-                near.assembly, self._is_end_free, self.threads_beside, excluded, names_pairs=False
+                near.assembly, self._is_end_free, self.threads_beside, excluded, touching, names_pairs=False
             )
         self._deviations = deviations
         return self._verifier_beside.verify(bpy.context, near.extended(accepted)).passed

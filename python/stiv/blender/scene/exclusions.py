@@ -43,6 +43,23 @@ def exclude_undecided(
     return excluded.joined(*_keys_of(pairs.chosen(pairs.where(partial(needs_no_decision, together=together)))))
 
 
+def with_touching(
+    excluded: Exclusions, assembly: Assembly, found: Indices, together: Collection[str]
+) -> tuple[Exclusions, Exclusions]:
+    """Exclusions with the excluded pairs of triangles of a session, (k, 2), that need no decision; and, apart from
+    these, its pairs of objects that may touch, but not overlap.
+    """
+    pairs, _ = assembly.face_pairs(found)
+
+    def touch(first: Element, second: Element) -> bool:
+        return first.side != second.side and tuple(sorted((first.side, second.side))) not in excluded.objects
+
+    are_touching = pairs.where(touch)
+    others = pairs.chosen(~are_touching)
+    joined = excluded.joined(*_keys_of(others.chosen(others.where(partial(needs_no_decision, together=together)))))
+    return joined, Exclusions.of(*_keys_of(pairs.chosen(are_touching)))
+
+
 def needs_no_decision(first: Element, second: Element, together: Collection[str]) -> bool:
     """May two elements intersect at the start: those of one object, or of objects that move `together`?"""
     return first.object == second.object or (first.object in together and second.object in together)
@@ -151,11 +168,14 @@ def excluded_bodies(excluded: Exclusions, assembly: Assembly) -> list[tuple[str 
     ]
 
 
-def has_only_excluded(excluded: Exclusions, assembly: Assembly, q: Floats, threads: int = 0) -> bool:
-    """Is every intersection at positions, (N, 3), between excluded faces, or objects with excluded faces?"""
+def has_only_excluded(
+    excluded: Exclusions, touching: Exclusions, assembly: Assembly, q: Floats, threads: int = 0
+) -> bool:
+    """Is every intersection at positions, (N, 3), between excluded or touching faces, or objects with excluded ones?"""
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    return bool(are_excluded(excluded, near.assembly.face_pairs(found)[0]).all())
+    pairs = near.assembly.face_pairs(found)[0]
+    return bool((are_excluded(excluded, pairs) | contains(touching, pairs)).all())
 
 
 def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> NDArray[np.int64]:
@@ -179,6 +199,11 @@ def are_excluded(excluded: Exclusions, pairs: FacePairs) -> Flags:
 
     own = pairs.where(lambda first, second: first.side == second.side)
     return np.where(own, excluded.contains(*_keys_of(pairs)), pairs.where(are_objects_excluded))
+
+
+def contains(excluded: Exclusions, pairs: FacePairs) -> Flags:
+    """Flags the pairs, (k,), that are excluded themselves."""
+    return excluded.contains(*_keys_of(pairs))
 
 
 def _keys_of(pairs: FacePairs) -> tuple[list[str], NDArray[np.int64]]:

@@ -19,7 +19,7 @@ from stiv.blender.scene.evaluated_scene import (
     view_positions_of,
 )
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import are_excluded, without_excluded
+from stiv.blender.scene.exclusions import are_excluded, contains, without_excluded
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.modifier_stack import simulation_error
@@ -63,9 +63,11 @@ class Verifier:
         is_step_free: StepTest,
         threads: int = 0,
         excluded: Exclusions | None = None,
+        touching: Exclusions | None = None,
         names_pairs: bool = True,
     ) -> None:
-        """Test the meshes of an assembly; threads 0 uses all cores. Excluded pairs may intersect.
+        """Test the meshes of an assembly; threads 0 uses all cores. Excluded pairs may intersect, and those that touch
+        by as much as rounding moves them.
 
         is_step_free: stiv.StepCheck.is_free of its surface, or the method of an EditSession. names_pairs: find the
         pairs that intersect if a step is not free, which takes longer than the test.
@@ -73,13 +75,13 @@ class Verifier:
         self.assembly = assembly
         self._threads = threads
         self._is_step_free = is_step_free
-        self._excluded = excluded or Exclusions()
+        self._excluded, self._touching = excluded or Exclusions(), touching or Exclusions()
         self._names_pairs = names_pairs
         self._diagonals = BothDiagonals(assembly, threads)
 
-    def tests(self, assembly: Assembly, excluded: Exclusions) -> bool:
-        """Is this the verifier of an assembly and its exclusions? Both may change during an edit."""
-        return self.assembly is assembly and self._excluded == excluded
+    def tests(self, assembly: Assembly, excluded: Exclusions, touching: Exclusions) -> bool:
+        """Is this the verifier of an assembly and its exclusions? They may change during an edit."""
+        return self.assembly is assembly and (self._excluded, self._touching) == (excluded, touching)
 
     def verify(self, context: bpy.types.Context, accepted: Floats) -> Verification:
         """Test Blender's present evaluation against the accepted surface, (N, 3), which is free of intersections.
@@ -112,7 +114,7 @@ class Verifier:
         message = _displacement_message(assembly, accepted, meshes)
         if message:
             return Verification(False, (), message)
-        if len(self._excluded):
+        if len(self._excluded) or len(self._touching):
             pairs = self._not_excluded(accepted, shown)
             if pairs:
                 return self._failure(pairs)
@@ -153,7 +155,7 @@ class Verifier:
         if between.any():
             overlapping = find_face_pairs(self.assembly, accepted, self._threads).sides()
             excluded &= ~(between & found.where(lambda *both: sides_of(*both) not in overlapping))
-        return found.chosen(~excluded)
+        return found.chosen(~(excluded | contains(self._touching, found)))
 
     def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
         pairs = without_excluded(
