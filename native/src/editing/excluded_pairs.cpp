@@ -56,7 +56,9 @@ struct PlacedTriangles {
   }
 
   bool intersect(Index a, Index b) const { return triangles_intersect(corners(a), corners(b), q); }
-  double depth(Index a, Index b) const { return intersection_depth(corners(a), corners(b), q); }
+  bool intersect_deeper(Index a, Index b, double depth) const {
+    return stiv::intersect_deeper(corners(a), corners(b), q, depth);
+  }
 
   bool overlap_in_plane(Index a, Index b, double tolerance) const {
     return stiv::overlap_in_plane(corners(a), corners(b), q, tolerance);
@@ -168,7 +170,7 @@ void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, cons
   const PlacedTriangles placed{surface_->triangles(), start};
   for (const auto& pair : pairs)
     if (placed.intersect(pair.first, pair.second))
-      (placed.depth(pair.first, pair.second) < rounding() ? shallow_ : deep_).push_back(pair);
+      (placed.intersect_deeper(pair.first, pair.second, rounding()) ? deep_ : shallow_).push_back(pair);
   if (!parts_may_cut) take_flush(start);
   std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
 }
@@ -200,7 +202,7 @@ void ExcludedPairs::take_contacts(const Given& given, const PositionsView& start
   SurfaceParts parts(*surface_);
   IndexPairs cutting;
   for (const auto& pair : contacts)
-    if (parts.closed_count(pair) == 0 || placed.depth(pair.first, pair.second) >= rounding())
+    if (parts.closed_count(pair) == 0 || placed.intersect_deeper(pair.first, pair.second, rounding()))
       cutting.push_back(parts.of(pair));
   for (const auto& pair : pairs_inside(contacts, parts, start)) cutting.push_back(parts.of(pair));
   sort_unique(cutting);
@@ -316,7 +318,7 @@ void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Po
   const PlacedTriangles before{surface_->triangles(), from}, after{surface_->triangles(), to};
   for (const auto& [a, b] : flush_) {
     if (move_together(before.corners(a), before.corners(b), from, to, rounding() / 4)) continue;
-    if (after.depth(a, b) < rounding() / 2) continue;  // keeps a margin to the depth that is not accepted
+    if (!after.intersect_deeper(a, b, rounding() / 2)) continue;  // keeps a margin to the depth that is not accepted
     const Vector3 normal = parting_direction(before.corners(a), before.corners(b), from, to, 2 * rounding());
     Event contact = contact_along(normal, after.corners(a), after.corners(b), to);
     contact.clearance.margin = least_;
@@ -330,7 +332,7 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q
   std::set_difference(pairs.begin(), pairs.end(), pairs_.begin(), pairs_.end(), std::back_inserter(left));
   std::erase_if(left, [&](const auto& pair) {
     const auto& [a, b] = pair;
-    return is_among(shallow_only_, a, b) && placed.depth(a, b) < rounding();
+    return is_among(shallow_only_, a, b) && !placed.intersect_deeper(a, b, rounding());
   });
   return left;
 }
@@ -342,7 +344,7 @@ IntersectionCount ExcludedPairs::count(const IndexPairs& pairs, const PositionsV
     if (is_among(shallow_only_, a, b)) continue;
     if (is_among(shallow_, a, b))
       ++found.shallow;
-    else if (is_among(deep_, a, b) || placed.depth(a, b) >= rounding())
+    else if (is_among(deep_, a, b) || placed.intersect_deeper(a, b, rounding()))
       ++found.deep;
   }
   return found;

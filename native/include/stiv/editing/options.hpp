@@ -51,8 +51,8 @@ struct EditOptions {
   /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")
   std::vector<std::pair<Index, Index>> overlapping;
   /// Bodies that move together: two of them that only touch at the start may slide, part and touch, but never intersect
-  /// deeper than rounding. One of them must be closed. Without this, rounding decides whether they start at all, and how far they move.
-  /// (mathematics.md, "Excluded pairs")
+  /// deeper than rounding. One of them must be closed. Without this, rounding decides whether they start at all, and
+  /// how far they move. (mathematics.md, "Excluded pairs")
   std::vector<Index> touching;
   ConstraintKind constraints = ConstraintKind::per_patch;
   ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear does not accumulate constraints

@@ -47,16 +47,28 @@ Corners sides_of(const Corners& triangle) {
 /// The normal, of any length.
 Vector3 normal_of(const Corners& triangle) { return (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]); }
 
-/// Calls a function with each axis of the separating axis theorem, of any length.
-template <class Call>
-void for_separating_axes(const Corners& a, const Corners& b, const Call& call) {
+/// Whether a test is true for an axis of the separating axis theorem, of any length.
+template <class Test>
+bool any_separating_axis(const Corners& a, const Corners& b, const Test& test) {
   for (const Corners& sides : {sides_of(a), sides_of(b)}) {
     const Vector3 normal = sides[0].cross(sides[1]);
-    call(normal);
-    for (const Vector3& side : sides) call(normal.cross(side));
+    if (test(normal)) return true;
+    for (const Vector3& side : sides)
+      if (test(normal.cross(side))) return true;
   }
   for (const Vector3& side : sides_of(a))
-    for (const Vector3& other : sides_of(b)) call(side.cross(other));
+    for (const Vector3& other : sides_of(b))
+      if (test(side.cross(other))) return true;
+  return false;
+}
+
+/// Calls a function with each of these axes.
+template <class Call>
+void for_separating_axes(const Corners& a, const Corners& b, const Call& call) {
+  any_separating_axis(a, b, [&](const Vector3& axis) {
+    call(axis);
+    return false;
+  });
 }
 
 using Triangle = std::array<Index, 3>;
@@ -133,6 +145,13 @@ double intersection_depth(const std::array<Index, 3>& first, const std::array<In
   double depth = std::numeric_limits<double>::infinity();
   for_separating_axes(a, b, [&](const Vector3& axis) { depth = std::min(depth, parting_motion(axis, a, b)); });
   return depth;
+}
+
+bool intersect_deeper(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,
+                      double depth) {
+  const Vector3 origin = q.row(first[0]);
+  const Corners a = seen_from(origin, first, q), b = seen_from(origin, second, q);
+  return !any_separating_axis(a, b, [&](const Vector3& axis) { return parting_motion(axis, a, b) < depth; });
 }
 
 bool overlap_in_plane(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,

@@ -26,6 +26,10 @@ double distance_apart(std::array<Index, 3> a, std::array<Index, 3> b, const Posi
 double intersection_depth(const std::array<Index, 3>& first, const std::array<Index, 3>& second,
                           const PositionsView& q);
 
+/// Whether this depth is at least a given one.
+bool intersect_deeper(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,
+                      double depth);
+
 /// Whether two triangles lie in one plane and face the same way, up to a tolerance, and overlap there by more than it.
 bool overlap_in_plane(const std::array<Index, 3>& first, const std::array<Index, 3>& second, const PositionsView& q,
                       double tolerance);
