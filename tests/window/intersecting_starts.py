@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import math
+
 import bmesh
 import bpy
 import scenes
 from mathutils import Matrix, Vector
-from playing import FURTHEST, box, box_x, click, expect_free, expect_near, prepared, start
-from scenes import WALL_FACE
+from playing import FURTHEST, INTO_WALL, NEAR, box, box_x, click, ended, expect_free, expect_near, prepared, start
+from scenes import HALF, WALL_FACE
 from simulation import Steps, Window
 
 INSIDE = WALL_FACE - 0.3  # of the box's center: the box reaches through the wall's face
@@ -133,6 +135,38 @@ def start_touching(window: Window) -> Steps:
     assert box_x() == before, (box_x(), before)
 
 
+def start_touching_each_other(window: Window) -> Steps:
+    """Two boxes, one on the other, both selected: they turn by a typed angle at once, and the wall stops both."""
+
+    def build() -> None:
+        scenes.add_box()
+        scenes.add_mesh("Upper", lambda content: bmesh.ops.create_cube(content, size=2 * HALF), (0.1, 2 * HALF, 0.0))
+
+    yield from prepared(window, build, "Box")
+    upper = bpy.data.objects["Upper"]
+    upper.select_set(True)
+    with window.override():
+        bpy.ops.ed.undo_push(message="both")
+    yield from window.settle()
+    yield from start(window, "R")
+    yield from window.type("40")
+    yield from window.settle()
+    window.picture("start_touching_each_other")
+    window.key("RET")
+    yield from ended(window)
+    for obj in (box(), upper):
+        expect_near(math.degrees(obj.rotation_euler.z), 40.0, 1e-3, f"the angle of {obj.name}")
+    across = Vector(upper.location) - Vector(box().location)
+    expect_near(across.angle(Vector((0.1, 2 * HALF, 0.0))), math.radians(40.0), 1e-4, "the turn of both")
+    yield from window.undo()
+    yield from window.rest_at((0.0, 0.0, 0.0))
+    yield from start(window)
+    yield from window.glide(window.pixel(INTO_WALL))
+    yield from click(window)
+    expect_near(box_x(), FURTHEST - 0.1, NEAR + 0.1, "the lower box at the wall")
+    expect_near(bpy.data.objects["Upper"].location.x, FURTHEST, NEAR, "the upper box at the wall")
+
+
 def start_touching_parts(window: Window) -> Steps:
     """A block of a mesh that touches another one slides along it, and does not pass into it."""
 
@@ -190,6 +224,7 @@ INTERSECTING_STARTS = {
         start_popup_let_pass,
         start_suzanne,
         start_touching,
+        start_touching_each_other,
         start_touching_parts,
         start_refused_modifier,
     )
