@@ -252,7 +252,8 @@ def with_numbers(
 
     obstacles: names of the bodies after those of the surface.
     """
-    names = [*(body.name for body in surface.bodies), *obstacles]
+    own = [body.name for body in surface.bodies]
+    names = [*own, *obstacles]
     separations: dict[tuple[str | int, str | int], float] = {
         (_body_number(a, names), _body_number(b, names)): h for (a, b), h in options.pair_separations.items()
     }
@@ -261,5 +262,5 @@ def with_numbers(
         pair_separations=separations,
         exclude=_excluded(options.exclude, surface, start),
         overlapping=_overlapping(options.overlapping, surface, start),
-        touching=[_body_number(body, [each.name for each in surface.bodies]) for body in options.touching],
+        touching=[_body_number(body, own) for body in options.touching],
     )

@@ -195,7 +195,6 @@ void ExcludedPairs::take_flush(const PositionsView& start) {
 void ExcludedPairs::take_contacts(const Given& given, const PositionsView& start, Execution& execution) {
   IndexPairs bodies = bodies_within_reach(*surface_, given.touching, start, rounding());
   std::erase_if(bodies, [&](const auto& pair) { return is_among(given.overlapping, pair.first, pair.second); });
-  if (bodies.empty()) return;
   const IndexPairs contacts = find_contacts(surface_, bodies, start, rounding(), execution);
   if (contacts.empty()) return;
   const PlacedTriangles placed{surface_->triangles(), start};

@@ -45,6 +45,7 @@ IndexPairs find_touching(const std::shared_ptr<const Surface>& surface, const In
 
 IndexPairs find_contacts(const std::shared_ptr<const Surface>& surface, const IndexPairs& bodies,
                          const PositionsView& q, double distance, Execution& execution) {
+  if (bodies.empty()) return {};
   const IndexPairs near = IntersectionTest(surface, {.lists_near_pairs = true}).find_near(q, distance, execution);
   const auto are_in_contact = [&](const std::pair<Index, Index>& pair) {
     const Corners a = corners_of(*surface, pair.first), b = corners_of(*surface, pair.second);

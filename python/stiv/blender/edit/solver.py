@@ -205,9 +205,9 @@ class EditSolver:
             self._at_start = assembly = without_loose_parts(assembly, loose)
             opened = yield from self._make_session(assembly, make_deformation, controls)
         (self._session, self._deformation), self.assembly = opened, assembly
-        found = self.session.excluded
-        if len(found):
-            self.excluded, self.touching = with_touching(self.excluded, assembly, found, self._moving(assembly))
+        self.excluded, self.touching = with_touching(
+            self.excluded, assembly, self.session.excluded, self._moving(assembly)
+        )
 
     def _make_session(
         self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats

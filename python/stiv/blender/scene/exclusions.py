@@ -39,8 +39,7 @@ def exclude_undecided(
 
     together: names of objects, see `needs_no_decision`.
     """
-    pairs, _ = assembly.face_pairs(found)
-    return excluded.joined(*_keys_of(pairs.chosen(pairs.where(partial(needs_no_decision, together=together)))))
+    return _joined_undecided(excluded, assembly.face_pairs(found)[0], together)
 
 
 def with_touching(
@@ -55,9 +54,12 @@ def with_touching(
         return first.side != second.side and tuple(sorted((first.side, second.side))) not in excluded.objects
 
     are_touching = pairs.where(touch)
-    others = pairs.chosen(~are_touching)
-    joined = excluded.joined(*_keys_of(others.chosen(others.where(partial(needs_no_decision, together=together)))))
+    joined = _joined_undecided(excluded, pairs.chosen(~are_touching), together)
     return joined, Exclusions.of(*_keys_of(pairs.chosen(are_touching)))
+
+
+def _joined_undecided(excluded: Exclusions, pairs: FacePairs, together: Collection[str]) -> Exclusions:
+    return excluded.joined(*_keys_of(pairs.chosen(pairs.where(partial(needs_no_decision, together=together)))))
 
 
 def needs_no_decision(first: Element, second: Element, together: Collection[str]) -> bool:
@@ -174,8 +176,7 @@ def has_only_excluded(
     """Is every intersection at positions, (N, 3), between excluded or touching faces, or objects with excluded ones?"""
     near = near_assembly(assembly, q)
     found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    pairs = near.assembly.face_pairs(found)[0]
-    return bool((are_excluded(excluded, pairs) | contains(touching, pairs)).all())
+    return bool(may_intersect(excluded, touching, near.assembly.face_pairs(found)[0]).all())
 
 
 def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> NDArray[np.int64]:
@@ -204,6 +205,11 @@ def are_excluded(excluded: Exclusions, pairs: FacePairs) -> Flags:
 def contains(excluded: Exclusions, pairs: FacePairs) -> Flags:
     """Flags the pairs, (k,), that are excluded themselves."""
     return excluded.contains(*_keys_of(pairs))
+
+
+def may_intersect(excluded: Exclusions, touching: Exclusions, pairs: FacePairs) -> Flags:
+    """Flags the pairs, (k,), that are excluded, of two objects with excluded faces, or touch."""
+    return are_excluded(excluded, pairs) | contains(touching, pairs)
 
 
 def _keys_of(pairs: FacePairs) -> tuple[list[str], NDArray[np.int64]]:

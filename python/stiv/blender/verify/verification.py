@@ -19,7 +19,7 @@ from stiv.blender.scene.evaluated_scene import (
     view_positions_of,
 )
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import are_excluded, contains, without_excluded
+from stiv.blender.scene.exclusions import are_excluded, contains, may_intersect
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.modifier_stack import simulation_error
@@ -158,9 +158,8 @@ class Verifier:
         return found.chosen(~(excluded | contains(self._touching, found)))
 
     def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
-        pairs = without_excluded(
-            find_face_pairs(with_current_triangulation(self.assembly, flips), shown, self._threads), self._excluded
-        )
+        found = find_face_pairs(with_current_triangulation(self.assembly, flips), shown, self._threads)
+        pairs = found.chosen(~may_intersect(self._excluded, self._touching, found))
         if not pairs:
             return Verification(True)
         intersecting = {each for pair in pairs for each in (pair.first, pair.second)}
