@@ -13,22 +13,24 @@ DOCTEST_SUMMARY = re.compile(r"test cases:\s*\d+ \|\s*(\d+) passed \|\s*(\d+) fa
 
 @dataclass
 class Counts:
-    """Numbers of tests, and how many were skipped for each reason."""
+    """Numbers of tests, how many were skipped for each reason, and a line for each failure that has a name."""
 
     passed: int = 0
     failed: int = 0
     skipped: Counter[str] = field(default_factory=Counter)
+    failures: list[str] = field(default_factory=list)
 
     def add(self, other: "Counts") -> None:
         """Add the numbers of another run."""
         self.passed += other.passed
         self.failed += other.failed
         self.skipped.update(other.skipped)
+        self.failures += other.failures
 
 
-def from_exit_code(code: int) -> Counts:
+def from_exit_code(name: str, code: int) -> Counts:
     """One test that passes if the exit code of a process is 0."""
-    return Counts(passed=int(code == 0), failed=int(code != 0))
+    return Counts(passed=int(code == 0), failed=int(code != 0), failures=[name] if code != 0 else [])
 
 
 def from_pytest(path: Path, code: int) -> Counts:
@@ -36,10 +38,12 @@ def from_pytest(path: Path, code: int) -> Counts:
     counts = Counts()
     for case in _cases(path):
         skip = case.find("skipped")
+        failure = next(case.iterfind("failure"), case.find("error"))
         if skip is not None:
             counts.skipped[_reason(skip)] += 1
-        elif case.find("failure") is not None or case.find("error") is not None:
+        elif failure is not None:
             counts.failed += 1
+            counts.failures.append(_failure(case, failure))
         else:
             counts.passed += 1
     nothing_collected = 5
@@ -53,10 +57,8 @@ def from_ctest(path: Path, code: int) -> Counts:
     counts = Counts()
     for case in _cases(path):
         summary = DOCTEST_SUMMARY.search(case.findtext("system-out", ""))
-        if summary is None:
-            counts.failed += 1
-        else:
-            counts.add(Counts(int(summary[1]), int(summary[2])))
+        passed, failed = (int(summary[1]), int(summary[2])) if summary else (0, 1)
+        counts.add(Counts(passed, failed, failures=[str(case.get("name"))] if failed else []))
     if code != 0:
         counts.failed = max(counts.failed, 1)
     return counts
@@ -72,6 +74,12 @@ def from_doctest(output: str, code: int) -> Counts:
     if code != 0 or not (summaries or skipped):
         counts.failed = max(counts.failed, 1)
     return counts
+
+
+def _failure(case: ElementTree.Element, failure: ElementTree.Element) -> str:
+    """Name and first line of the message."""
+    message = failure.get("message", "").strip().splitlines() or ["no message"]
+    return f"{case.get('classname')}.{case.get('name')}: {message[0][:200]}"
 
 
 def _reason(skip: ElementTree.Element) -> str:

@@ -90,7 +90,7 @@ def lint(title: str) -> Counts:
     """Checks of format, style and types; each counts as one test."""
     counts = Counts()
     for check in LINT_CHECKS:
-        counts.add(junit_counts.from_exit_code(run(f"{title}: {check}", ["tools/lint.sh", check])))
+        counts.add(junit_counts.from_exit_code(check, run(f"{title}: {check}", ["tools/lint.sh", check])))
     return counts
 
 
@@ -148,9 +148,11 @@ def run_all(todo: list[Job]) -> list[Row]:
 
 
 def print_row(row: Row) -> None:
-    """One line of the summary, and a line for each reason for skipped tests."""
+    """One line of the summary, and a line for each failure and each reason for skipped tests."""
     counts = row.counts
     print(f"{row.title:<20}{counts.passed:>8}{counts.failed:>8}{counts.skipped.total():>9}{row.seconds:>9.0f}")
+    for failure in counts.failures:
+        print(f"    failed {failure}")
     for reason, number in sorted(counts.skipped.items()):
         print(f"    skipped {number}: {reason}")
 
