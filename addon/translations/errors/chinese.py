@@ -150,6 +150,8 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "仅在物体模式中可用；请离开当前模式",
     "{} changed its number of points": "{} 的点数已改变",
     "{} changed its number of vertices": "{} 的顶点数已改变",
+    "{} and {} cut each other, move as one": "{} 与 {} 相交，作为整体移动",
+    "{} and {} more cut each other, move as one": "{} 与另外 {} 个相交，作为整体移动",
     "{} cuts itself in {}, {}": "{} 与自身相交 ({})，{}",
     "{} cuts or touches itself, {} faces, left as it is": "{} 自相交或自接触，{} 个面，保持原样",
     "{} cuts {} in {}, {}": "{} 与 {} 相交 ({})，{}",

@@ -150,6 +150,8 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "geht nur im Objektmodus; den jetzigen Modus verlassen",
     "{} changed its number of points": "{}: die Zahl der Punkte hat sich geändert",
     "{} changed its number of vertices": "{}: die Zahl der Vertices hat sich geändert",
+    "{} and {} cut each other, move as one": "{} und {} schneiden sich, bewegen sich als Ganzes",
+    "{} and {} more cut each other, move as one": "{} und {} weitere schneiden sich, bewegen sich als Ganzes",
     "{} cuts itself in {}, {}": "{} schneidet sich selbst in {}, {}",
     "{} cuts or touches itself, {} faces, left as it is": "{} schneidet oder berührt sich selbst, {} Flächen, bleibt so",
     "{} cuts {} in {}, {}": "{} schneidet {} in {}, {}",

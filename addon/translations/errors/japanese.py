@@ -150,6 +150,8 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "オブジェクトモードでのみ使えます。現在のモードを終了してください",
     "{} changed its number of points": "{} のポイント数が変わりました",
     "{} changed its number of vertices": "{} の頂点数が変わりました",
+    "{} and {} cut each other, move as one": "{} と {} は交差しています。一体で動きます",
+    "{} and {} more cut each other, move as one": "{} ほか {} 個が互いに交差しています。一体で動きます",
     "{} cuts itself in {}, {}": "{} が自己交差 ({})、{}",
     "{} cuts or touches itself, {} faces, left as it is": "{} は自己交差または接触しています (面 {})。そのままにします",
     "{} cuts {} in {}, {}": "{} と {} が交差 ({})、{}",

@@ -150,6 +150,8 @@ MESSAGES = {
     "works in Object Mode; leave the present mode": "오브젝트 모드에서 작동함; 현재 모드를 나가세요",
     "{} changed its number of points": "{}의 점 개수가 바뀜",
     "{} changed its number of vertices": "{}의 버텍스 개수가 바뀜",
+    "{} and {} cut each other, move as one": "{}, {} 서로 교차함, 하나로 움직임",
+    "{} and {} more cut each other, move as one": "{} 외 {}개가 서로 교차함, 하나로 움직임",
     "{} cuts itself in {}, {}": "{} 자기 교차 ({}), {}",
     "{} cuts or touches itself, {} faces, left as it is": "{}이(가) 자체 교차하거나 닿음, 면 {}개, 그대로 둠",
     "{} cuts {} in {}, {}": "{} 교차 {} ({}), {}",

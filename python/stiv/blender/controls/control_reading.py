@@ -2,7 +2,7 @@
 """Makes the control sets of an edit from its participants and the visible meshes."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 import bpy
@@ -26,6 +26,7 @@ from stiv.blender.controls.rigid_groups import (
     check_dependents,
     check_instances,
     find_rigid_groups,
+    tie_groups,
 )
 from stiv.blender.controls.rigid_placement import make_rigid_set
 from stiv.blender.controls.shared_meshes import other_users
@@ -59,8 +60,11 @@ def make_control_sets_steps(
     meshes: Sequence[VisibleMesh],
     settings: EditSettings,
     kind: str,
+    cutting: Collection[tuple[str, str]] = (),
 ) -> Steps[tuple[list[ControlSet], list[RigidGroup]]]:
-    """Steps of `make_control_sets`."""
+    """Steps of `make_control_sets`. cutting: pairs of names of selected objects that cut each other, and move as one
+    unless each uses its own pivot.
+    """
     turns = Turns()
     if any(each.role == "bones" for each in participants):
         return [_posed(context, participants, meshes, settings, kind)], []
@@ -76,6 +80,8 @@ def make_control_sets_steps(
     deformed = deforming.union(meshes[index].owner.name for indices in by_lattice.values() for index in indices)
     groups = add_followers(groups, {mesh.owner.name for mesh in meshes}, deformed, context.scene)
     _check_independent(participants, groups, by_lattice, meshes, deforming)
+    if kind == "move" or context.scene.tool_settings.transform_pivot_point != "INDIVIDUAL_ORIGINS":
+        groups = tie_groups(groups, cutting, kind)
     groups, passengers = attach_passengers(groups, {mesh.owner.name for mesh in meshes})
     control_sets = [_rigid(group, meshes, settings, kind) for group in groups]
     for participant in participants:

@@ -180,14 +180,19 @@ class RotationGoal(PlacementGoal):
 class ScaleGoal(PlacementGoal):
     """Centre and scale factors along `axes`, (3, 3).
 
-    about: makes the deformation for a pivot.
+    about: makes the deformation for a pivot. askew: names of two objects with other axes; these allow three equal
+    factors only.
     """
 
     axes: Floats = field(kw_only=True)
     about: PivotDeformation = field(kw_only=True)
+    askew: tuple[str, str] | None = None
 
     def second_goal(self, controls: Floats, last: Floats, motion: Motion) -> Floats:
-        """Goal of the factors, (3,). Raises InputError for factors of 0."""
+        """Goal of the factors, (3,). Raises InputError for factors of 0, and for other factors than the axes allow."""
+        if self.askew is not None and not motion.is_uniform:
+            first, other = self.askew
+            raise InputError(f'{other}: moves with "{first}" but has another rotation; scale it alone')
         factors: Floats = np.einsum("ki,kl,li->i", self.axes, motion.linear, self.axes)
         if not factors.all():
             raise InputError("a scale of 0 would flatten objects; choose another factor")
@@ -213,8 +218,10 @@ class ScaleGoal(PlacementGoal):
         return 0.0
 
     def _factors(self, motion: Motion) -> FreeDirections:
+        if self.askew is not None or (motion.free is None and motion.is_uniform):
+            return UNIFORM
         if motion.free is None:
-            return UNIFORM if motion.is_uniform else ALL_FREE
+            return ALL_FREE
         chosen = np.abs(self.axes.T @ motion.free.axes[:, motion.free.free]).max(axis=1, initial=0.0)
         return FreeDirections(np.eye(3), chosen > SLANT)
 

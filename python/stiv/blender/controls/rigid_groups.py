@@ -10,9 +10,11 @@ from stiv import InputError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement, check_unconstrained
 from stiv.blender.controls.rigid_trial import check_own_transform, moves_as_a_whole
+from stiv.blender.controls.transform_locks import can_rotate
 from stiv.blender.scene.dependencies import Dependency, add_dependents, ancestors, dependencies
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.followers import can_follow, used_names
+from stiv.blender.scene.message_fitting import fit_message
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,8 @@ class RigidGroup:
 
     bent: names of the members whose modifiers refer to objects that stay. followers: names of meshes that do not belong
     to the group, but whose shape or place depends on its members. tied: names of two objects, the second of which
-    depends on the first, so that all can only move as one.
+    depends on the first, or cuts it, so that all can only move as one. note: a message about the objects that cut each
+    other; "" if none do.
     """
 
     roots: tuple[Participant, ...]
@@ -29,6 +32,7 @@ class RigidGroup:
     bent: frozenset[str] = frozenset()
     followers: frozenset[str] = frozenset()
     tied: tuple[str, str] | None = None
+    note: str = ""
 
     @property
     def surfaces(self) -> frozenset[str]:
@@ -96,6 +100,41 @@ def add_followers(
         result = [whole if each in tied[:1] else each for each in result if each not in tied[1:]]
         result += [] if tied else [whole]
     return result
+
+
+def tie_groups(groups: Sequence[RigidGroup], cutting: Collection[tuple[str, str]], kind: str) -> list[RigidGroup]:
+    """Merge selected groups that cut each other.
+
+    cutting: pairs of names of objects that cut each other. Groups with locks, and those that modifiers shape where they
+    are, remain alone.
+    """
+    number = {name: k for k, group in enumerate(groups) if _may_tie(group, kind) for name in group.members}
+    clusters = {k: [k] for k in range(len(groups))}
+    for first, second in sorted(cutting):
+        if first in number and second in number:
+            longer, shorter = sorted((clusters[number[first]], clusters[number[second]]), key=len, reverse=True)
+            if longer is not shorter:
+                longer += shorter
+                clusters.update(dict.fromkeys(shorter, longer))
+    distinct = sorted(map(sorted, {id(each): each for each in clusters.values()}.values()))
+    return [_tie([groups[k] for k in each]) if len(each) > 1 else groups[each[0]] for each in distinct]
+
+
+def _may_tie(group: RigidGroup, kind: str) -> bool:
+    """Can the group take any motion of this kind, without a modifier that shapes it where it is?"""
+    if not group.roots[0].selected or group.bent or group.followers:
+        return False
+    objects = [root.reference.find() for root in group.roots]
+    return not any(any(ob.lock_location) or (kind == "rotate" and not can_rotate(ob)) for ob in objects)
+
+
+def _tie(groups: Sequence[RigidGroup]) -> RigidGroup:
+    names = [group.roots[0].reference.name for group in groups]
+    if len(names) == 2:
+        note = fit_message("{} and {} cut each other, move as one", *names)
+    else:
+        note = fit_message("{} and {} more cut each other, move as one", names[0], len(names) - 1)
+    return replace(join_groups(groups), tied=(names[0], names[1]), note=note)
 
 
 def check_dependents(
@@ -186,4 +225,5 @@ def join_groups(groups: Sequence[RigidGroup]) -> RigidGroup:
         frozenset().union(*(group.bent for group in groups)),
         frozenset().union(*(group.followers for group in groups)),
         next((group.tied for group in groups if group.tied), None),
+        next((group.note for group in groups if group.note), ""),
     )

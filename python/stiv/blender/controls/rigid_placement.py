@@ -30,7 +30,8 @@ def make_rigid_set(
     rest = np.concatenate([each.world() for each in meshes]) if meshes else starts[0].world[None, :3, 3]
     selected = group.roots[0].selected
     scales = kind == "scale" and selected
-    axes = _axes(group, starts) if scales else None
+    frames = _frames(group, starts) if scales else []
+    axes = frames[0] if scales else None
     deformation = stiv.rigid(rest) if axes is None else stiv.scaling(rest, axes)
     controls = _rest_controls(rest, axes)
     motion = PlacementMotion(controls[0], controls[0], axes)
@@ -47,7 +48,7 @@ def make_rigid_set(
     rule = PlacementGoal(selected, turns, first.world[:3, 3], free, _up(first) if can_align else None, tied)
     about = _about_pivots(rest, meshes, movers)
     if axes is not None:
-        rule = ScaleGoal(**vars(rule), axes=axes, about=about)
+        rule = ScaleGoal(**vars(rule), axes=axes, about=about, askew=_askew(group, frames))
     elif selected and kind == "rotate":
         rule = RotationGoal(**vars(rule), about=about, free_axis=_turns_on_contact(settings))
     weight = settings.response_weight(True) if selected else 1.0
@@ -57,7 +58,7 @@ def make_rigid_set(
         tuple(reference.name for reference in references), "rigid", surfaces,
         deformation if placed is None else placed.deformation, controls,
         weight * max_weights, max_weights, None, rule,
-        PlacementWriter(references, tuple(starts), motion),
+        PlacementWriter(references, tuple(starts), motion), note=group.note,
         weight_axes=None if free is None else np.array([free.axes, np.eye(3)]), placed=placed,
     )  # fmt: skip
 
@@ -129,17 +130,18 @@ def _up(start: ObjectTransform) -> Floats | None:
     return np.asarray(axis / length) if length > 0 else None
 
 
-def _axes(group: RigidGroup, starts: Sequence[ObjectTransform]) -> Floats:
-    """World axes of the group's roots as a rotation, (3, 3). Raises InputError if they are not orthogonal."""
+def _frames(group: RigidGroup, starts: Sequence[ObjectTransform]) -> list[Floats]:
+    """World axes of the group's roots as rotations, (3, 3). Raises InputError if they are not orthogonal."""
     frames = []
     for root, start in zip(group.roots, starts, strict=True):
         check_axes(root.reference.name, start.world)
         columns = start.world[:3, :3] / np.linalg.norm(start.world[:3, :3], axis=0)
         frames.append(nearest_rotation(columns * [1, 1, np.sign(np.linalg.det(columns))]))
-    for root, frame in zip(group.roots[1:], frames[1:], strict=True):
-        if not are_parallel(frames[0], frame):
-            raise InputError(
-                f'{root.reference.name}: moves with "{group.roots[0].reference.name}" '
-                "but has another rotation; scale it alone"
-            )
-    return frames[0]
+    return frames
+
+
+def _askew(group: RigidGroup, frames: Sequence[Floats]) -> tuple[str, str] | None:
+    """Names of the first root and of one whose axes are not parallel to its axes; None without."""
+    names = [root.reference.name for root in group.roots]
+    others = (name for name, axes in zip(names, frames, strict=True) if not are_parallel(frames[0], axes))
+    return next(((names[0], name) for name in others), None)

@@ -19,6 +19,7 @@ from stiv.blender.controls.control_set import ControlSet, Participant
 from stiv.blender.controls.motion import Motion
 from stiv.blender.controls.participants import find_participants
 from stiv.blender.controls.placement_writer import PlacementWriter
+from stiv.blender.edit.cutting_start import start_as_one_steps
 from stiv.blender.edit.edit_notes import EditNotes
 from stiv.blender.edit.increments import Path, split_motion
 from stiv.blender.edit.late_seams import LateSeams, start_steps
@@ -33,7 +34,7 @@ from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_
 from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
-from stiv.blender.edit.touching_start import Parting, start_apart_steps
+from stiv.blender.edit.touching_start import Parting
 from stiv.blender.edit.typed_values import apply_increments
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -140,7 +141,7 @@ class BlenderEdit:
         with kept_twins():
             reading = partial(take_snapshot_steps, context, settings, kind, participants, adapt, obstacles)
             if parts:
-                snapshot, solver, parting = yield from start_apart_steps(reading)
+                snapshot, solver, parting = yield from start_as_one_steps(reading)
                 return cls(snapshot, solver, LateSeams(read), parting)
             snapshot, solver = yield from start_steps(reading())
         return cls(snapshot, solver, LateSeams(read))

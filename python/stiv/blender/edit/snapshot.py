@@ -27,6 +27,8 @@ from stiv.blender.scene.strand_reading import surface_of
 from stiv.blender.settings import EditSettings
 from stiv.task import Steps, Turns
 
+Names = tuple[str, str]
+
 
 @dataclass(frozen=True)
 class EditSnapshot:
@@ -42,6 +44,7 @@ class EditSnapshot:
         placements: of all objects of the view layer, (4, 4) each.
         frame: the scene's when it was read.
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
+        cutting: pairs of names of selected objects that cut each other and move as one; None where all move alone.
     """
 
     assembly: Assembly
@@ -53,6 +56,7 @@ class EditSnapshot:
     placements: tuple[Floats, ...]
     carried: frozenset[str]
     frame: float
+    cutting: frozenset[Names] | None = None
 
     @cached_property
     def start(self) -> Floats:
@@ -73,10 +77,12 @@ def take_snapshot_steps(
     participants: Sequence[Participant],
     adapt: Callable[[ControlSet], ControlSet],
     obstacles: Collection[str],
+    cutting: frozenset[Names] | None = None,
 ) -> Steps[EditSnapshot]:
     """Steps that read the scene for an edit of this kind, and change nothing. Raise InputError.
 
-    adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface.
+    adapt: may replace each control set. obstacles: names of objects that are obstacles beside the surface. cutting: see
+    `EditSnapshot`.
     """
     if settings.guard == "auto" and any(_is_animated(context, each) for each in participants):
         settings = replace(settings, guard="viewport")  # the render shows the keyframes, not what has changed since
@@ -89,7 +95,7 @@ def take_snapshot_steps(
     beside = read_static_meshes(context, obstacles, frozenset(guard.evaluations)) if obstacles else ()
     solid = [mesh for mesh in scene.meshes if mesh.strands is None]
     yield from turns.take()
-    found, groups = yield from make_control_sets_steps(context, participants, solid, settings, kind)
+    found, groups = yield from make_control_sets_steps(context, participants, solid, settings, kind, cutting or ())
     control_sets = tuple(adapt(mirror_controls(each, solid)) for each in found)
     divided = next((each.posed.meshes for each in control_sets if each.posed is not None), solid)
     if not any(each.rule.moves for each in control_sets):
@@ -107,7 +113,7 @@ def take_snapshot_steps(
     placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)
     return EditSnapshot(
-        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame
+        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame, cutting
     )
 
 

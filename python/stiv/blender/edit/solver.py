@@ -17,11 +17,12 @@ from stiv.blender.edit.sessions import (
     session_options,
     stack_controls,
 )
-from stiv.blender.edit.snapshot import EditSnapshot
+from stiv.blender.edit.snapshot import EditSnapshot, Names
 from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
 from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.elements import PART
 from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded, with_touching
 from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
@@ -31,6 +32,17 @@ from stiv.task import Call, Steps, Turns, run
 
 LAST_DRAG_TIME = 0.5  # seconds in which the last drag is solved again after the deadline
 CALLS = 4  # of a session between two Jacobians of observed stacks
+
+
+class SelectionCutsItselfError(Exception):
+    """Objects that move rigidly cut each other at the start, and do not move as one yet.
+
+    pairs: of their names, with those that were given.
+    """
+
+    def __init__(self, pairs: frozenset[Names]) -> None:
+        super().__init__(pairs)
+        self.pairs = pairs
 
 
 class EditSolver:
@@ -43,11 +55,20 @@ class EditSolver:
     """
 
     def __init__(
-        self, assembly: Assembly, control_sets: Sequence[ControlSet], controls: Floats, settings: EditSettings
+        self,
+        assembly: Assembly,
+        control_sets: Sequence[ControlSet],
+        controls: Floats,
+        settings: EditSettings,
+        cutting: frozenset[Names] | None = None,
     ) -> None:
-        """Take the controls of all control sets at the start, (m, 3). Call `start` before anything else."""
+        """Take the controls of all control sets at the start, (m, 3). Call `start` before anything else.
+
+        cutting: see `EditSnapshot`.
+        """
         self.control_sets = tuple(control_sets)
         self._settings = settings
+        self._cutting = cutting if settings.interference else None
         self.intersecting = self.excluded = settings.excluded
         self.touching = Exclusions()
         self.loose_part_notes: tuple[str, ...] = ()
@@ -59,12 +80,16 @@ class EditSolver:
         self.trail = Trail(controls, controls)
 
     def start(self) -> Steps[None]:
-        """Steps that open the session, if collisions are on. Raise InputError, StartIntersectsError."""
+        """Steps that open the session, if collisions are on.
+
+        Raise InputError, StartIntersectsError, and SelectionCutsItselfError for other pairs than those of `cutting`.
+        """
         if self._settings.interference:
             turns = Turns()
             self._at_start = guard_bent_quads(self.assembly, self._settings.threads)
             yield from turns.take()
             yield from self._open_session(self._at_start, self.trail.written)
+        self._cutting = None  # from now on, no other start is possible
 
     @property
     def deformation(self) -> stiv.Deformation:
@@ -197,6 +222,7 @@ class EditSolver:
             moving = self._moving(assembly)
             turns = Turns()
             pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, moving)
+            self._check_cutting(assembly, pairs)
             self.intersecting = self.excluded = pairs
             yield from turns.take()
             loose = find_touching_parts(assembly, moving, self._settings.threads)
@@ -208,6 +234,16 @@ class EditSolver:
         self.excluded, self.touching = with_touching(
             self.excluded, assembly, self.session.excluded, self._moving(assembly)
         )
+
+    def _check_cutting(self, assembly: Assembly, pairs: Exclusions) -> None:
+        """Raise SelectionCutsItselfError for pairs that should move as one."""
+        if self._cutting is None:
+            return
+        names = {(a.partition(PART)[0], b.partition(PART)[0]) for a, b in pairs.objects}
+        rigid = _moved_by(assembly, [each for each in self.control_sets if each.role == "rigid" and not each.placed])
+        found = frozenset(pair for pair in names if rigid.issuperset(pair))
+        if not found <= self._cutting:
+            raise SelectionCutsItselfError(found | self._cutting)
 
     def _make_session(
         self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats
@@ -236,12 +272,17 @@ class EditSolver:
 
     def _moving(self, assembly: Assembly) -> set[str]:
         """Names of the objects that the goal moves."""
-        moving = (each for each in self.control_sets if each.rule.moves)
-        return {assembly.meshes[index].owner.name for each in moving for index in each.surfaces}
+        return _moved_by(assembly, self.control_sets)
+
+
+def _moved_by(assembly: Assembly, control_sets: Sequence[ControlSet]) -> set[str]:
+    """Names of the objects that these control sets move to a goal."""
+    moving = (each for each in control_sets if each.rule.moves)
+    return {assembly.meshes[index].owner.name for each in moving for index in each.surfaces}
 
 
 def start_solver_steps(snapshot: EditSnapshot) -> Steps[EditSolver]:
-    """Steps that start a solver from a snapshot. Raise InputError, StartIntersectsError."""
-    solver = EditSolver(snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings)
+    """Steps that start a solver from a snapshot. Raise what `EditSolver.start` raises."""
+    solver = EditSolver(snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings, snapshot.cutting)
     yield from solver.start()
     return solver
