@@ -32,6 +32,7 @@ BLENDER = ("env", f"BLENDER_USER_RESOURCES={INSIDE}/user", "blender")
 SCREEN = (1280, 800)
 TIME_LIMIT = 3600.0  # seconds for all scenarios; where Blender hangs, driver.py ends it much sooner
 SEQUENCES = 200  # of random events
+REPEATED = 2  # the most failed scenarios that are played again; more of them are no accident
 REAL = "real_events"  # the scenario for which Blender must not simulate events: then it hears no others
 
 
@@ -52,13 +53,32 @@ def main() -> int:
     with debian_folder.system_mounts(folder):
         copy_sources(folder)
         install(folder, archive)
-        failures = {}
-        for simulated, scenarios in sessions(chosen.scenarios):
-            drive(folder, chosen, simulated, scenarios)
-            keep_pictures(folder, chosen.pictures)
-            failures |= read_failures(folder)
+        failures = play(folder, chosen, chosen.scenarios)
+        failures |= play_again(folder, chosen, failures)
     write_report(chosen.report, failures)
     return report(failures)
+
+
+def play(folder: Path, chosen: argparse.Namespace, names: list[str]) -> dict[str, str | None]:
+    """Play these scenarios, all without names; returns the failure of each, see `read_failures`."""
+    failures: dict[str, str | None] = {}
+    for simulated, scenarios in sessions(names):
+        drive(folder, chosen, simulated, scenarios)
+        keep_pictures(folder, chosen.pictures)
+        failures |= read_failures(folder)
+    return failures
+
+
+def play_again(folder: Path, chosen: argparse.Namespace, failures: dict[str, str | None]) -> dict[str, str | None]:
+    """Play a few failed scenarios once more: on a busy machine, an event may come too late."""
+    failed = [name for name, failure in failures.items() if failure]
+    if not failed or len(failed) > REPEATED or "driver" in failed:
+        return {}
+    second = play(folder, chosen, failed)
+    for name in failed:
+        if not second.get(name):
+            print(f"{name}: passed at the second attempt; the first one failed:\n{failures[name]}")
+    return second
 
 
 def set_up(folder: Path, release: str) -> str:
