@@ -129,8 +129,8 @@ class EditOptions(SharedOptions):
     #: pairs of bodies, by name or number, that may overlap, but no more than at the start. They can part in any
     #: direction, and are guarded once they are apart. "intersecting": all pairs of bodies that do at the start
     overlapping: Sequence[tuple[str | int, str | int]] | str = field(default=(), metadata={"convert": _body_pairs})
-    #: bodies, by name or number, that move together: two of them that only touch at the start may slide, part and
-    #: touch, but never intersect deeper than rounding. One of the two must be closed
+    #: bodies, by name or number: two of them that only touch at the start may slide, part and touch, but never
+    #: intersect deeper than rounding. One of the two must be closed
     touching: Sequence[str | int] = field(default=(), metadata={"convert": _bodies})
     #: "lcp": contacts only push; "linear": they also pull, and each round starts without constraints
     solver: str = _choice("lcp", "solver", _native.ConstraintSolver)

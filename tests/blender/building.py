@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Small scenes made through bpy, and looking at them without the package under test."""
 
+from itertools import combinations
 from typing import Any
 
 import bmesh
@@ -8,6 +9,7 @@ import bpy
 import numpy as np
 from mathutils import Vector
 from oracles import rational
+from oracles.parting import parting_motion
 
 CUBE = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
 CUBE_FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -204,6 +206,17 @@ def meet(first: str, second: str) -> int:
     low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
     near = np.argwhere((low <= high).all(axis=2))
     return sum(rational.triangles_intersect((0, 1, 2), (3, 4, 5), np.vstack([one[a], two[b]])) for a, b in near)
+
+
+def deepest() -> float:
+    """How far any two objects with a surface cut into each other, in roundings of their coordinates; 0 if none do."""
+    shapes = [shown_triangles(ob.name) for ob in bpy.context.view_layer.objects if ob.type == "MESH"]
+    depth = 0.0
+    for one, two in combinations(shapes, 2):
+        low, high = np.maximum(one.min(1)[:, None], two.min(1)), np.minimum(one.max(1)[:, None], two.max(1))
+        near = np.argwhere((low <= high).all(axis=2))
+        depth = max([depth, *(parting_motion(one[a], two[b]) for a, b in near)])
+    return depth / float(np.spacing(np.float32(max(abs(each).max() for each in shapes))))
 
 
 def add_bowl(radius: float, rim: float, segments: int = 32) -> Any:

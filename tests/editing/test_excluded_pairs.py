@@ -300,6 +300,107 @@ def test_bodies_that_touch_turn_together_wherever_rounding_puts_them(place: str,
         assert deepest(result.surface, triangles) < STORED
 
 
+class Stack:
+    """Two bodies that move without turning, the second on the first along the first axis, and of the same width."""
+
+    def __init__(self, seed: int, faces: str = "outward") -> None:
+        chance = np.random.default_rng(seed)
+        triangles, boxes = flush_boxes(*FLUSH["whole sides"])
+        self.axes = turned(np.eye(3), chance.normal(size=3))  # as rows
+        start = (boxes @ self.axes + chance.normal(size=3)).astype(np.float32).astype(float)
+        if faces == "inward":
+            triangles = triangles[:, ::-1]
+        if faces == "open":  # only the lower side of the second body is left: a sheet on a cube
+            touching = np.abs((start - start[4]) @ self.axes[0]) < 1e-5
+            triangles = triangles[(triangles < 8).all(axis=1) | touching[triangles].all(axis=1)]
+        parts = [(stiv.rigid(start[rows]), np.arange(16, dtype=np.int32)[rows]) for rows in (LOWER, UPPER)]
+        self.rest = np.concatenate([stiv.rigid_rest_controls(start[rows]) for rows in (LOWER, UPPER)])
+        options = stiv.EditOptions(
+            touching=[0, 1], storage=[stiv.StorageFrame(0, 0, np.eye(4))], weights=[0.0, 0.0, 1.0, 0.0]
+        )
+        self.session = stiv.EditSession(two_bodies(triangles), stiv.concatenate(parts, start), self.rest, options)
+
+    def move(self, way: np.ndarray) -> None:
+        """Move the second body from the start, along the axes."""
+        goal = self.rest.copy()
+        goal[2] += way @ self.axes
+        self.session.edit(goal)
+
+    @property
+    def way(self) -> np.ndarray:
+        """Of the second body since the start, along the axes."""
+        moved: np.ndarray = (self.session.controls[2] - self.rest[2]) @ self.axes.T
+        return moved
+
+
+LOWER, UPPER = slice(0, 8), slice(8, 16)
+FACES = ["outward", "inward", "open"]
+
+
+@pytest.mark.parametrize("faces", FACES)
+@pytest.mark.parametrize("seed", range(6))
+def test_a_body_does_not_sink_into_one_of_the_same_width(seed: int, faces: str) -> None:
+    """No two of their triangles need to intersect, since the sides are in common planes."""
+    stack = Stack(seed, faces)
+    for inward in (0.5, 0.1, 0.9):
+        stack.move(np.array([-inward, 0, 0]))
+        assert stack.way == pytest.approx(0, abs=STORED)
+
+
+@pytest.mark.parametrize("faces", FACES)
+def test_a_body_returns_only_to_the_contact(faces: str) -> None:
+    stack = Stack(1, faces)
+    for height, end in ((0.4, 0.4), (-0.7, 0.0), (0.2, 0.2), (0.0, 0.0)):
+        stack.move(np.array([height, 0, 0]))
+        assert stack.way == pytest.approx([end, 0, 0], abs=1e-3)
+        assert stack.way[0] > -STORED
+
+
+@pytest.mark.parametrize("faces", FACES)
+@pytest.mark.parametrize("seed", range(6))
+def test_a_body_that_is_pressed_slides_along_one_of_the_same_width(seed: int, faces: str) -> None:
+    stack, chance = Stack(seed, faces), np.random.default_rng(seed)
+    way = np.array([-0.3, *chance.uniform(-0.5, 0.5, 2)])
+    stack.move(way)
+    assert stack.way == pytest.approx(way * (0, 1, 1), abs=1e-3)
+    assert stack.way[0] > -STORED
+
+
+@pytest.mark.parametrize("faces", FACES)
+@pytest.mark.parametrize("seed", range(6))
+def test_a_body_of_the_same_width_moves_anywhere_but_inside(seed: int, faces: str) -> None:
+    stack, chance = Stack(seed, faces), np.random.default_rng(seed)
+    for _ in range(6):
+        stack.move(chance.normal(scale=0.7, size=3) * (chance.random(3) < 0.6))  # along some axes only
+        overlaps = 1 - abs(stack.way[1:])
+        assert overlaps.min() < STORED or not -1 < stack.way[0] < -STORED  # beside it, or not between its ends
+
+
+@pytest.mark.parametrize("content", ["crate", "rug"])
+def test_a_crate_in_a_room_rises_but_does_not_pass_its_floor(content: str) -> None:
+    """The faces of the room look inward."""
+    room, crate = (triangulated(box(1, (size,) * 3)).moved((0, 0, size / 2)) for size in (3, 1))
+    standing, faces = crate.vertices, crate.triangles()
+    if content == "rug":
+        faces = np.array([(0, 1, 2), (0, 2, 3)], np.int32)
+        standing = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    start = np.concatenate([room.vertices, standing])
+    triangles = np.concatenate([room.triangles()[:, ::-1], faces + 8])
+    rows = slice(8, len(start))
+    deformation = stiv.concatenate([(stiv.rigid(start[rows]), np.arange(8, len(start), dtype=np.int32))], start)
+    rest = stiv.rigid_rest_controls(start[rows])
+    bodies = [stiv.Body("room", "fixed"), stiv.Body("content")]
+    surface = stiv.Surface(
+        triangles, len(start), vertex_body=(np.arange(len(start)) >= 8).astype(np.int32), bodies=bodies
+    )
+    options = stiv.EditOptions(touching=[0, 1], storage=[stiv.StorageFrame(0, 0, np.eye(4))], weights=[1.0, 0.0])
+    session = stiv.EditSession(surface, deformation, rest, options)
+    for height, end in ((-0.5, 0.0), (0.8, 0.8), (-0.3, 0.0)):
+        session.edit(rest + [(0, 0, height), (0, 0, 0)])
+        assert session.controls[0, 2] - rest[0, 2] == pytest.approx(end, abs=1e-3)
+        assert session.controls[0, 2] - rest[0, 2] > -STORED
+
+
 def test_bodies_that_cut_each_other_do_not_only_touch() -> None:
     triangles, start = flush_boxes((0.999, 0.25, 0.25), (1, 0.5, 0.5))
     with pytest.raises(stiv.StartIntersectsError):

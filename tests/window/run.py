@@ -32,7 +32,7 @@ BLENDER = ("env", f"BLENDER_USER_RESOURCES={INSIDE}/user", "blender")
 SCREEN = (1280, 800)
 TIME_LIMIT = 3600.0  # seconds for all scenarios; where Blender hangs, driver.py ends it much sooner
 SEQUENCES = 200  # of random events
-REPEATED = 2  # the most failed scenarios that are played again; more of them are no accident
+REPEATED = 2  # the most failed scenarios that are played again; with more, the machine is not the cause
 REAL = "real_events"  # the scenario for which Blender must not simulate events: then it hears no others
 
 

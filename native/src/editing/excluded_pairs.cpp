@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "acceptance/clearance/triangle_distance.hpp"
 #include "acceptance/intersection/near_pairs.hpp"
 #include "editing/touching_pairs.hpp"
-#include "penetration/body_components.hpp"
 #include "stiv/detection/distance.hpp"
 #include "stiv/error.hpp"
 
@@ -88,67 +88,20 @@ bool move_together(const std::array<Index, 3>& first, const std::array<Index, 3>
   return std::none_of(first.begin(), first.end(), deviates) && std::none_of(second.begin(), second.end(), deviates);
 }
 
-/// The contact of two triangles at the start of a step: that of the corner of the first and the corner of the second
-/// that overlap most along the normal at its end.
-Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::array<Index, 3> second,
-                    const PositionsView& end) {
-  const auto is_lower = [&](Index i, Index j) { return end.row(i).dot(normal) < end.row(j).dot(normal); };
-  std::iter_swap(second.begin(), std::max_element(second.begin(), second.end(), is_lower));
-  Event event;
-  event.vertices = {*std::min_element(first.begin(), first.end(), is_lower), second[0], second[1], second[2]};
-  event.weights = {1, -1, 0, 0};
-  event.normal = normal;
-  event.is_plane = true;
-  return event;
-}
-
 }  // namespace
-
-/// The connected components of a surface.
-class ExcludedPairs::SurfaceParts {
- public:
-  explicit SurfaceParts(const Surface& surface) : surface_(surface), component_(surface.connected_components()) {}
-
-  /// The components of two triangles, smaller number first.
-  std::pair<Index, Index> of(const std::pair<Index, Index>& pair) const {
-    return std::minmax(component_[at(first_corner(pair.first))], component_[at(first_corner(pair.second))]);
-  }
-
-  bool are_of_one_body(const std::pair<Index, Index>& pair) const {
-    return surface_.body_of(first_corner(pair.first)) == surface_.body_of(first_corner(pair.second));
-  }
-
-  /// How many of the components of two triangles have no boundary.
-  int closed_count(const std::pair<Index, Index>& pair) {
-    if (closed_.empty()) find_closed();
-    return closed_[at(first_corner(pair.first))] + closed_[at(first_corner(pair.second))];
-  }
-
- private:
-  Index first_corner(Index triangle) const { return surface_.triangles()(triangle, 0); }
-
-  void find_closed() {
-    std::vector<std::array<Index, 3>> triangles;
-    for (const auto& corners : surface_.triangles().rowwise())
-      triangles.push_back({corners[0], corners[1], corners[2]});
-    closed_.assign(component_.size(), 1);  // by the first vertex of each component, then by vertex
-    for (const auto& edge : boundary_edges(triangles)) closed_[at(component_[at(edge[0])])] = 0;
-    for (std::size_t vertex = 0; vertex < closed_.size(); ++vertex) closed_[vertex] = closed_[at(component_[vertex])];
-  }
-
-  const Surface& surface_;
-  std::vector<Index> component_;       // of each vertex: its first vertex
-  std::vector<unsigned char> closed_;  // whether that of each vertex has no boundary; empty until it is needed
-};
 
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Given& given, const PositionsView& start,
                              double least, Execution& execution)
     : surface_(std::move(surface)), least_(least) {
   const IndexPairs pairs = checked(given.pairs, static_cast<Index>(surface_->triangles().rows()));
   bodies_ = bodies_of(pairs);
-  take_given(pairs, given.parts_may_cut, start);
-  take_contacts(given, start, execution);
+  if (pairs.empty() && given.touching.size() < 2) return;
+  const SurfaceParts parts(*surface_);
+  take_given(pairs, given.parts_may_cut, parts, start);
+  take_contacts(given, parts, start, execution);
   if (pairs_.empty() && flush_.empty()) return;
+  facing_ = FacingParts(*surface_, parts, flush_, start, rounding());
+  for (const auto& [a, b] : flush_) flush_parts_.emplace_back(parts.of(a), parts.of(b));
   list_triangles_around_vertices();
   add_touching(start);
   find_others_that_touch(start, execution);
@@ -166,19 +119,18 @@ void ExcludedPairs::list_triangles_around_vertices() {
 }
 
 /// Divides the given pairs by their depth, and by whether their parts only touch.
-void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start) {
+void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, const SurfaceParts& parts,
+                               const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
   for (const auto& pair : pairs)
     if (placed.intersect(pair.first, pair.second))
       (placed.intersect_deeper(pair.first, pair.second, rounding()) ? deep_ : shallow_).push_back(pair);
-  if (!parts_may_cut) take_flush(start);
+  if (!parts_may_cut) take_flush(parts, start);
   std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
 }
 
 /// Takes the shallow pairs of parts that only touch.
-void ExcludedPairs::take_flush(const PositionsView& start) {
-  if (shallow_.empty()) return;
-  SurfaceParts parts(*surface_);
+void ExcludedPairs::take_flush(const SurfaceParts& parts, const PositionsView& start) {
   IndexPairs cutting;
   for (const auto& pair : deep_) cutting.push_back(parts.of(pair));
   for (const auto& pair : pairs_inside(shallow_, parts, start)) cutting.push_back(parts.of(pair));
@@ -192,13 +144,13 @@ void ExcludedPairs::take_flush(const PositionsView& start) {
 
 /// Takes the pairs of bodies that may touch, where parts of them only touch. One is closed: of two sheets, none would
 /// be guarded by the faces on its other side.
-void ExcludedPairs::take_contacts(const Given& given, const PositionsView& start, Execution& execution) {
+void ExcludedPairs::take_contacts(const Given& given, const SurfaceParts& parts, const PositionsView& start,
+                                  Execution& execution) {
   IndexPairs bodies = bodies_within_reach(*surface_, given.touching, start, rounding());
   std::erase_if(bodies, [&](const auto& pair) { return is_among(given.overlapping, pair.first, pair.second); });
   const IndexPairs contacts = find_contacts(surface_, bodies, start, rounding(), execution);
   if (contacts.empty()) return;
   const PlacedTriangles placed{surface_->triangles(), start};
-  SurfaceParts parts(*surface_);
   IndexPairs cutting;
   for (const auto& pair : contacts)
     if (parts.closed_count(pair) == 0 || placed.intersect_deeper(pair.first, pair.second, rounding()))
@@ -212,7 +164,8 @@ void ExcludedPairs::take_contacts(const Given& given, const PositionsView& start
 
 /// The pairs in one plane with the insides of both parts on the same side of it: these lie in each other, such as a
 /// mirrored copy in place of the original. Without an inside, only equal triangles do.
-IndexPairs ExcludedPairs::pairs_inside(const IndexPairs& pairs, SurfaceParts& parts, const PositionsView& start) const {
+IndexPairs ExcludedPairs::pairs_inside(const IndexPairs& pairs, const SurfaceParts& parts,
+                                       const PositionsView& start) const {
   const PlacedTriangles placed{surface_->triangles(), start};
   IndexPairs found;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(found),
@@ -315,14 +268,35 @@ void ExcludedPairs::remove_from(Events& events, const PositionsView& start,
 
 void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Positions& to) const {
   const PlacedTriangles before{surface_->triangles(), from}, after{surface_->triangles(), to};
-  for (const auto& [a, b] : flush_) {
-    if (move_together(before.corners(a), before.corners(b), from, to, rounding() / 4)) continue;
-    if (!after.intersect_deeper(a, b, rounding() / 2)) continue;  // keeps a margin to the depth that is not accepted
-    const Vector3 normal = parting_direction(before.corners(a), before.corners(b), from, to, 2 * rounding());
-    Event contact = contact_along(normal, after.corners(a), after.corners(b), to);
+  const auto partings = facing_.add_contacts(events, from, to, rounding() / 2, least_);
+  for (std::size_t k = 0; k < flush_.size(); ++k) {
+    const std::array<Index, 3> a = before.corners(flush_[k].first), b = before.corners(flush_[k].second);
+    if (move_together(a, b, from, to, rounding() / 4)) continue;
+    if (!stiv::intersect_deeper(a, b, to, rounding() / 2)) continue;  // a margin to the depth that is not accepted
+    const std::optional<Vector3> common = common_parting(partings, flush_parts_[k], a, b, from);
+    const Vector3 normal = common ? *common : parting_direction(a, b, from, to, 2 * rounding());
+    Event contact = contact_along(normal, a, b, to);
     contact.clearance.margin = least_;
     if (normal.dot(weighted_sum(contact, to) - weighted_sum(contact, from)) < 0) events.push_back(contact);
   }
+}
+
+/// The direction in which faces of the same two parts are stopped, if it parts two triangles, too: any other one would
+/// keep a part that is pressed against the other from sliding along it.
+std::optional<Vector3> ExcludedPairs::common_parting(const std::vector<FacingParts::Parting>& partings,
+                                                     const std::pair<Index, Index>& parts,
+                                                     const std::array<Index, 3>& first,
+                                                     const std::array<Index, 3>& second,
+                                                     const PositionsView& from) const {
+  for (const auto& [faces, direction] : partings) {
+    Vector3 normal = faces == parts ? direction : Vector3(-direction);
+    if (faces != parts && faces != std::pair(parts.second, parts.first)) continue;
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const Index vertex : first) lowest = std::min(lowest, normal.dot(from.row(vertex)));
+    for (const Index vertex : second) highest = std::max(highest, normal.dot(from.row(vertex)));
+    if (highest - lowest < 2 * rounding()) return normal;
+  }
+  return std::nullopt;
 }
 
 IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q) const {
@@ -333,6 +307,7 @@ IndexPairs ExcludedPairs::others(const IndexPairs& pairs, const PositionsView& q
     const auto& [a, b] = pair;
     return is_among(shallow_only_, a, b) && !placed.intersect_deeper(a, b, rounding());
   });
+  if (const auto passed = facing_.find_passed(q, rounding())) left.push_back(*passed);
   return left;
 }
 

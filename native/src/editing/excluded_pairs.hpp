@@ -5,6 +5,8 @@
 #include <memory>
 #include <vector>
 
+#include "editing/facing_parts.hpp"
+#include "editing/surface_parts.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/detection/event.hpp"
 #include "stiv/surface.hpp"
@@ -55,12 +57,13 @@ class ExcludedPairs {
   void remove_from(Events& events, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
 
   /// Adds an event for each pair of parts that only touch at the start of a session, and that intersects deeper than
-  /// rounding at the end of a step: a plane that parts the two triangles at the start of the step. Detection finds no
-  /// time at which triangles begin to touch that already do.
+  /// rounding at the end of a step, or of which one has passed the other: a plane that parts the two
+  /// triangles at the start of the step. Detection finds no time at which triangles begin to touch that already do.
   /// @param from, to all vertices of the surface
   void add_contacts(Events& events, const Positions& from, const Positions& to) const;
 
-  /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q.
+  /// The pairs, sorted and with the smaller index first, that are not excluded, or intersect too deeply at q; and one
+  /// of parts that only touched at the start, if one has passed the other.
   IndexPairs others(const IndexPairs& pairs, const PositionsView& q) const;
 
   /// Counts pairs that intersect at q, sorted.
@@ -70,15 +73,16 @@ class ExcludedPairs {
   bool are_more(const IntersectionCount& now, const IntersectionCount& before) const;
 
  private:
-  class SurfaceParts;
-
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
-  void take_given(const IndexPairs& pairs, bool parts_may_cut, const PositionsView& start);
-  void take_flush(const PositionsView& start);
-  void take_contacts(const Given& given, const PositionsView& start, Execution& execution);
+  void take_given(const IndexPairs& pairs, bool parts_may_cut, const SurfaceParts& parts, const PositionsView& start);
+  void take_flush(const SurfaceParts& parts, const PositionsView& start);
+  void take_contacts(const Given& given, const SurfaceParts& parts, const PositionsView& start, Execution& execution);
   void list_triangles_around_vertices();
-  IndexPairs pairs_inside(const IndexPairs& pairs, SurfaceParts& parts, const PositionsView& start) const;
+  std::optional<Vector3> common_parting(const std::vector<FacingParts::Parting>& partings,
+                                        const std::pair<Index, Index>& parts, const std::array<Index, 3>& first,
+                                        const std::array<Index, 3>& second, const PositionsView& from) const;
+  IndexPairs pairs_inside(const IndexPairs& pairs, const SurfaceParts& parts, const PositionsView& start) const;
   void add_touching(const PositionsView& start);
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);
@@ -94,6 +98,8 @@ class ExcludedPairs {
   IndexPairs flush_;                        // pairs of parts that only touch: given ones, and those of two bodies
   IndexPairs shallow_only_;                 // these, and others that touch: never deeper than rounding
   IndexPairs all_;                          // all of these
+  FacingParts facing_;                      // of the flush pairs
+  IndexPairs flush_parts_;                  // of each flush pair: the components of its triangles
   std::vector<std::vector<Index>> around_;  // triangles of each vertex; empty without pairs
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "acceptance/clearance/triangle_distance.hpp"
+#include "acceptance/intersection/near_pairs.hpp"
 
 namespace stiv {
 
@@ -62,14 +63,21 @@ IndexPairs bodies_within_reach(const Surface& surface, const std::vector<Index>&
   std::vector<Eigen::AlignedBox3d> boxes(surface.bodies().size());
   for (Index vertex = 0; vertex < surface.vertex_count(); ++vertex)
     boxes[at(surface.body_of(vertex))].extend(Vector3(q.row(vertex)));
-  std::vector<Index> sorted = bodies;
-  std::sort(sorted.begin(), sorted.end());
+  std::vector<Index> sorted = bodies;  // by their first x, so that each is only compared with those that begin in it
+  std::sort(sorted.begin(), sorted.end(),
+            [&](Index a, Index b) { return boxes[at(a)].min().x() < boxes[at(b)].min().x(); });
   IndexPairs near;
-  for (std::size_t i = 0; i < sorted.size(); ++i)
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const Eigen::AlignedBox3d& box = boxes[at(sorted[i])];
     for (std::size_t k = i + 1; k < sorted.size(); ++k) {
-      const Index a = sorted[i], b = sorted[k];
-      if (surface.bodies_meet(a, b) && boxes[at(a)].exteriorDistance(boxes[at(b)]) <= distance) near.emplace_back(a, b);
+      const Eigen::AlignedBox3d& other = boxes[at(sorted[k])];
+      if (other.min().x() - box.max().x() > distance) break;
+      if (box.exteriorDistance(other) <= distance && surface.bodies_meet(sorted[i], sorted[k]))
+        near.push_back(std::minmax(sorted[i], sorted[k]));
     }
+  }
+  sort_unique(near);
+  std::erase_if(near, [](const auto& pair) { return pair.first == pair.second; });
   return near;
 }
 

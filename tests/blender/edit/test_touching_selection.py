@@ -10,19 +10,17 @@ from building import (
     add_cube,
     add_grid,
     add_modifier,
+    deepest,
     edit_mode,
     select,
     shift,
-    shown_triangles,
     snapshot,
     stretch,
     turn,
 )
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from oracles.parting import parting_motion
 
-import stiv
 from stiv.blender import BlenderEdit, EditSettings
 
 DEEPEST = 64  # roundings of the largest coordinate
@@ -50,17 +48,6 @@ def tower(seed: int, count: int = 3) -> tuple[list[Any], np.ndarray]:
 
 def begin(kind: str = "move") -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, EditSettings(), kind)
-
-
-def deepest() -> float:
-    """How far any two visible meshes cut into each other, in roundings of their coordinates."""
-    corners = [shown_triangles(ob.name) for ob in bpy.context.view_layer.objects]
-    owner = np.repeat(np.arange(len(corners)), [len(each) for each in corners])
-    points = np.concatenate(corners).reshape(-1, 3).astype(float)
-    triangles = np.arange(len(points)).reshape(-1, 3)
-    pairs = [(a, b) for a, b in stiv.find_intersections(points, triangles).tolist() if owner[a] != owner[b]]
-    depth = max((parting_motion(points[triangles[a]], points[triangles[b]]) for a, b in pairs), default=0.0)
-    return depth / float(np.spacing(np.float32(abs(points).max())))
 
 
 def matrices(objects: list[Any]) -> np.ndarray:

@@ -50,9 +50,9 @@ struct EditOptions {
   /// Pairs of bodies that may overlap, but no more than at the start: they can part in any direction. While a pair
   /// overlaps, it has no events. Once it is apart, it is guarded like any other. (mathematics.md, "Overlapping bodies")
   std::vector<std::pair<Index, Index>> overlapping;
-  /// Bodies that move together: two of them that only touch at the start may slide, part and touch, but never intersect
-  /// deeper than rounding. One of them must be closed. Without this, rounding decides whether they start at all, and
-  /// how far they move. (mathematics.md, "Excluded pairs")
+  /// Two of these bodies that only touch at the start may slide, part and touch, but never intersect deeper than
+  /// rounding. One of them must be closed. Without this, rounding decides whether they start at all, and how far they
+  /// move. (mathematics.md, "Excluded pairs")
   std::vector<Index> touching;
   ConstraintKind constraints = ConstraintKind::per_patch;
   ConstraintSolver solver = ConstraintSolver::lcp;  ///< linear does not accumulate constraints

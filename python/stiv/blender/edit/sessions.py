@@ -56,10 +56,12 @@ def session_options(
     control_sets: Sequence[ControlSet],
     controls: ArrayLike,
     settings: EditSettings,
+    may_touch: bool = False,
 ) -> stiv.EditOptions:
     """Options of a session of all control sets that starts at these stacked controls, (m, 3).
 
-    make_deformation: returns that of `deformation_of`; called only if pairs are excluded.
+    make_deformation: returns that of `deformation_of`; called only if pairs are excluded. may_touch: whether objects
+    may touch any others at the start, not only those that move with them.
     """
     frames = storage_frames([(len(each.controls), each.frame) for each in control_sets])
     exclude = None
@@ -74,15 +76,17 @@ def session_options(
         exclude=exclude,
         parts_may_cut=any(each.posed is not None for each in control_sets),  # skin folds at open seams
         overlapping=excluded_bodies(settings.excluded, assembly),
-        touching=_bodies_that_may_touch(assembly, control_sets),
+        touching=_bodies_that_may_touch(assembly, control_sets, may_touch),
         storage=frames,
     )
 
 
-def _bodies_that_may_touch(assembly: Assembly, control_sets: Sequence[ControlSet]) -> list[str | int]:
-    """The bodies that the goal moves, if there are several. Poses do not limit what touches."""
+def _bodies_that_may_touch(assembly: Assembly, control_sets: Sequence[ControlSet], may_touch: bool) -> list[str | int]:
+    """The bodies that the goal moves, or all, if there are several. Poses do not limit what touches."""
     if any(each.posed is not None for each in control_sets):
         return []
+    if may_touch:
+        return list(range(len(assembly.surface.bodies)))
     moving = {index for each in control_sets if each.rule.moves for index in each.surfaces}
     starts = [assembly.starts[index] for index in moving if assembly.starts[index] < assembly.starts[index + 1]]
     bodies = np.unique(assembly.surface.vertex_body[starts]).tolist() if starts else []

@@ -45,6 +45,7 @@ class EditSnapshot:
         frame: the scene's when it was read.
         carried: names of the objects whose strands follow the moving objects, and are therefore no obstacles.
         cutting: pairs of names of selected objects that cut each other and move as one; None where all move alone.
+        may_touch: whether objects that move may touch others from the start.
     """
 
     assembly: Assembly
@@ -57,6 +58,7 @@ class EditSnapshot:
     carried: frozenset[str]
     frame: float
     cutting: frozenset[Names] | None = None
+    may_touch: bool = False
 
     @cached_property
     def start(self) -> Floats:
@@ -112,8 +114,19 @@ def take_snapshot_steps(
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)
+    deforms = all(each.role != "rigid" or each.placed is not None for each in control_sets if each.rule.moves)
     return EditSnapshot(
-        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame, cutting
+        assembly,
+        control_sets,
+        chosen,
+        guard,
+        scene.hidden,
+        dropped_exclusions,
+        placements,
+        carried,
+        frame,
+        cutting,
+        may_touch=deforms and cutting is not None,
     )
 
 

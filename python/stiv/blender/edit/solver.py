@@ -50,7 +50,7 @@ class EditSolver:
 
     intersecting: the excluded pairs of the settings, and those at the start that needed no decision.
     excluded: the same with pairs beside them that touch at the start.
-    touching: pairs of different objects that only touch at the start, and move together.
+    touching: pairs of different objects that only touch at the start.
     loose_part_notes: notes on loose edges and vertices that are left out.
     """
 
@@ -61,14 +61,16 @@ class EditSolver:
         controls: Floats,
         settings: EditSettings,
         cutting: frozenset[Names] | None = None,
+        may_touch: bool = False,
     ) -> None:
         """Take the controls of all control sets at the start, (m, 3). Call `start` before anything else.
 
-        cutting: see `EditSnapshot`.
+        cutting, may_touch: see `EditSnapshot`.
         """
         self.control_sets = tuple(control_sets)
         self._settings = settings
         self._cutting = cutting if settings.interference else None
+        self._may_touch, self._touches = may_touch, False
         self.intersecting = self.excluded = settings.excluded
         self.touching = Exclusions()
         self.loose_part_notes: tuple[str, ...] = ()
@@ -102,6 +104,12 @@ class EditSolver:
     def has_session(self) -> bool:
         """Is a state known to be free of intersections?"""
         return self._session is not None
+
+    @property
+    def touches_others(self) -> bool:
+        """Does an object that moves touch one that does not?"""
+        moving = self._moving(self.assembly)
+        return any(name.partition(PART)[0] not in moving for names in self.touching.objects for name in names)
 
     @property
     def session(self) -> stiv.EditSession:
@@ -212,7 +220,9 @@ class EditSolver:
         return results
 
     def _open_session(self, assembly: Assembly, controls: Floats) -> Steps[None]:
-        """Open a session. At its first start, objects may intersect themselves and those that move with them."""
+        """Open a session. At its first start, objects may intersect themselves and those that move with them, and
+        perhaps touch others.
+        """
         make_deformation = cache(lambda: deformation_of(assembly, self.control_sets))
         try:
             opened = yield from self._make_session(assembly, make_deformation, controls)
@@ -224,6 +234,7 @@ class EditSolver:
             pairs = exclude_undecided(self._settings.excluded, assembly, error.pairs, moving)
             self._check_cutting(assembly, pairs)
             self.intersecting = self.excluded = pairs
+            self._touches = self._may_touch
             yield from turns.take()
             loose = find_touching_parts(assembly, moving, self._settings.threads)
             yield from turns.take()
@@ -249,7 +260,7 @@ class EditSolver:
         self, assembly: Assembly, make_deformation: Callable[[], stiv.Deformation], controls: Floats
     ) -> Steps[tuple[stiv.EditSession, stiv.Deformation]]:
         settings = replace(self._settings, excluded=self.excluded)
-        options = session_options(assembly, make_deformation, self.control_sets, controls, settings)
+        options = session_options(assembly, make_deformation, self.control_sets, controls, settings, self._touches)
         self._inputs = None if self._is_changing() else SessionInputs.of(assembly, self.control_sets, options)
         kept = None if self._inputs is None else take_session(self._inputs, controls)
         if kept is not None:
@@ -283,6 +294,9 @@ def _moved_by(assembly: Assembly, control_sets: Sequence[ControlSet]) -> set[str
 
 def start_solver_steps(snapshot: EditSnapshot) -> Steps[EditSolver]:
     """Steps that start a solver from a snapshot. Raise what `EditSolver.start` raises."""
-    solver = EditSolver(snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings, snapshot.cutting)
+    solver = EditSolver(
+        snapshot.assembly, snapshot.control_sets, snapshot.start, snapshot.settings, snapshot.cutting,
+        snapshot.may_touch,
+    )  # fmt: skip
     yield from solver.start()
     return solver

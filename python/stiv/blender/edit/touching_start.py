@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Starts an edit of objects in contact with others, such as a crate on the floor: those that touch are parted first, by
-rounding.
+rounding. Where they cannot be, and in Edit Mode, they may touch.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import bpy
 import numpy as np
 
 import stiv
+from stiv import InputError
 from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.directions import ALL_FREE, FreeDirections
 from stiv.blender.controls.editable import is_keyed
@@ -64,6 +65,8 @@ def start_apart_steps(
     read: makes steps that read the scene. Raise InputError and StartIntersectsError, with nothing changed.
     """
     snapshot = yield from read()
+    if snapshot.may_touch:
+        return *(yield from _start_touching_steps(snapshot)), None
     movers, refusal = _Movers.of(snapshot), None
     try:
         clear = snapshot, (yield from start_solver_steps(snapshot))
@@ -88,7 +91,25 @@ def start_apart_steps(
             if refusal is None:
                 return *clear, None
     assert refusal is not None
-    raise refusal
+    try:
+        return *(yield from _start_touching_steps(replace(snapshot, may_touch=True))), None
+    except ObjectsIntersectError:
+        raise refusal from None
+
+
+def _start_touching_steps(snapshot: EditSnapshot) -> Steps[Started]:
+    """Steps that start where objects may touch others; if they do, with a minimum distance that they already have."""
+    solver = yield from start_solver_steps(snapshot)
+    if not solver.touches_others or snapshot.settings.separation > 0:
+        return snapshot, solver
+    moving = {index for each in snapshot.control_sets if each.rule.moves for index in each.surfaces}
+    meshes = [snapshot.assembly.meshes[index] for index in sorted(moving)]
+    gap = GAP * max(rounding_of(SURPLUS * points) for mesh in meshes for points in (mesh.world(), mesh.local))
+    kept = replace(snapshot, settings=replace(snapshot.settings, separation=KEPT * gap))
+    try:
+        return kept, (yield from start_solver_steps(kept))
+    except InputError:  # a stretched frame keeps larger distances only
+        return snapshot, solver
 
 
 def _start_parted_steps(read: Callable[[], Steps[EditSnapshot]], parting: Parting) -> Steps[Started]:

@@ -18,9 +18,12 @@ from stiv.blender.scene.assembly import Assembly
 from stiv.blender.scene.elements import PART, Element, FacePair, FacePairs
 from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.evaluations import RENDER, SHOWN
+from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.message_fitting import first_and_others, fit_message
 from stiv.blender.scene.near_assembly import near_assembly
+from stiv.touching import rounding_of
 
+DEEPEST = 64  # of faces that only touch, in roundings: a session allows 16, and Blender's evaluation rounds again
 _MOST_NOTES = 3  # of one kind that name objects
 
 
@@ -173,10 +176,33 @@ def excluded_bodies(excluded: Exclusions, assembly: Assembly) -> list[tuple[str 
 def has_only_excluded(
     excluded: Exclusions, touching: Exclusions, assembly: Assembly, q: Floats, threads: int = 0
 ) -> bool:
-    """Is every intersection at positions, (N, 3), between excluded or touching faces, or objects with excluded ones?"""
+    """Is every intersection at positions, (N, 3), one that `find_forbidden` leaves out?"""
     near = near_assembly(assembly, q)
-    found = stiv.find_intersections(near.extended(q), near.assembly.surface, threads=threads)
-    return bool(may_intersect(excluded, touching, near.assembly.face_pairs(found)[0]).all())
+    return not find_forbidden(excluded, touching, near.assembly, near.extended(q), threads)
+
+
+def find_forbidden(
+    excluded: Exclusions, touching: Exclusions, assembly: Assembly, q: Floats, threads: int = 0
+) -> FacePairs:
+    """The intersections at positions, (N, 3), that are not excluded, nor of two objects with excluded faces, nor of
+    touching faces that cut no deeper than rounding.
+    """
+    triangles = stiv.find_intersections(q, assembly.surface, threads=threads)
+    found = find_face_pairs(assembly, q, threads, triangles)
+    return found.chosen(~(are_excluded(excluded, found) | only_touch(touching, found, assembly, q, triangles)))
+
+
+def only_touch(touching: Exclusions, found: FacePairs, assembly: Assembly, q: Floats, triangles: Indices) -> Flags:
+    """Flags the pairs, (k,), of `find_face_pairs` that touch, and cut no deeper than rounding.
+
+    triangles: the intersecting ones, (n, 2), at positions, (N, 3).
+    """
+    flags = touching.contains(*_keys_of(found))
+    if flags.any():
+        depths = stiv.intersection_depths(q, assembly.surface, triangles)
+        are_deep = depths > DEEPEST * rounding_of(q[assembly.surface.triangles[triangles]])
+        flags[assembly.face_pairs(triangles)[1][are_deep]] = False
+    return flags
 
 
 def excluded_within(excluded: Exclusions, mesh: VisibleMesh) -> NDArray[np.int64]:
@@ -200,16 +226,6 @@ def are_excluded(excluded: Exclusions, pairs: FacePairs) -> Flags:
 
     own = pairs.where(lambda first, second: first.side == second.side)
     return np.where(own, excluded.contains(*_keys_of(pairs)), pairs.where(are_objects_excluded))
-
-
-def contains(excluded: Exclusions, pairs: FacePairs) -> Flags:
-    """Flags the pairs, (k,), that are excluded themselves."""
-    return excluded.contains(*_keys_of(pairs))
-
-
-def may_intersect(excluded: Exclusions, touching: Exclusions, pairs: FacePairs) -> Flags:
-    """Flags the pairs, (k,), that are excluded, of two objects with excluded faces, or touch."""
-    return are_excluded(excluded, pairs) | contains(touching, pairs)
 
 
 def _keys_of(pairs: FacePairs) -> tuple[list[str], NDArray[np.int64]]:

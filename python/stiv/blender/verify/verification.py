@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 import numpy as np
 
+import stiv
 from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -19,7 +20,7 @@ from stiv.blender.scene.evaluated_scene import (
     view_positions_of,
 )
 from stiv.blender.scene.evaluations import RENDER, SHOWN, VIEWPORT
-from stiv.blender.scene.exclusions import are_excluded, contains, may_intersect
+from stiv.blender.scene.exclusions import are_excluded, find_forbidden, only_touch
 from stiv.blender.scene.face_pairs import find_face_pairs
 from stiv.blender.scene.merged_modes import Placed, read_apart
 from stiv.blender.scene.modifier_stack import simulation_error
@@ -149,17 +150,18 @@ class Verifier:
 
         Only the end of the step is tested; the step is shorter than the rounding of single precision.
         """
-        found = find_face_pairs(self.assembly, shown, self._threads)
+        triangles = stiv.find_intersections(shown, self.assembly.surface, threads=self._threads)
+        found = find_face_pairs(self.assembly, shown, self._threads, triangles)
         excluded = are_excluded(self._excluded, found)
         between = excluded & found.where(lambda first, second: first.side != second.side)
         if between.any():
             overlapping = find_face_pairs(self.assembly, accepted, self._threads).sides()
             excluded &= ~(between & found.where(lambda *both: sides_of(*both) not in overlapping))
-        return found.chosen(~(excluded | contains(self._touching, found)))
+        return found.chosen(~(excluded | only_touch(self._touching, found, self.assembly, shown, triangles)))
 
     def _verify_flips(self, flips: tuple[CurrentTriangulation, ...], shown: Floats) -> Verification:
-        found = find_face_pairs(with_current_triangulation(self.assembly, flips), shown, self._threads)
-        pairs = found.chosen(~may_intersect(self._excluded, self._touching, found))
+        current = with_current_triangulation(self.assembly, flips)
+        pairs = find_forbidden(self._excluded, self._touching, current, shown, self._threads)
         if not pairs:
             return Verification(True)
         intersecting = {each for pair in pairs for each in (pair.first, pair.second)}
