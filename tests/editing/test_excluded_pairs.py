@@ -376,6 +376,27 @@ def test_a_body_of_the_same_width_moves_anywhere_but_inside(seed: int, faces: st
         assert overlaps.min() < STORED or not -1 < stack.way[0] < -STORED  # beside it, or not between its ends
 
 
+@pytest.mark.parametrize("rigid", [True, False])
+@pytest.mark.parametrize("height", [-0.05, -0.15, -0.3, -0.8, -2.0, -20.0])
+def test_a_flat_pyramid_does_not_pass_the_sheet_on_which_it_stands(height: float, rigid: bool) -> None:
+    """All its faces touch the sheet, and one step could take it to the other side as a whole."""
+    sheet = np.array([(-6, -6, 0), (6, -6, 0), (6, 6, 0), (-6, 6, 0)], float)
+    pyramid = np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 0.1)], float)
+    start = np.concatenate([sheet, pyramid])
+    sides = [(4 + k, 4 + (k + 1) % 4, 8) for k in range(4)]
+    triangles = np.array([(0, 1, 2), (0, 2, 3), (4, 6, 5), (4, 7, 6), *sides], np.int32)
+    bodies = [stiv.Body("sheet", "fixed"), stiv.Body("pyramid")]
+    surface = stiv.Surface(triangles, 9, vertex_body=np.repeat([0, 1], [4, 5]), bodies=bodies)
+    moving = stiv.rigid(pyramid) if rigid else stiv.identity(5)
+    rest = stiv.rigid_rest_controls(pyramid) if rigid else pyramid
+    whole = stiv.concatenate([(moving, np.arange(4, 9, dtype=np.int32))], start)
+    weights = [1.0, 0.0] if rigid else None
+    options = stiv.EditOptions(touching=[0, 1], storage=[stiv.StorageFrame(0, 0, np.eye(4))], weights=weights)
+    session = stiv.EditSession(surface, whole, rest, options)
+    session.edit(rest + np.array([(0, 0, height), (0, 0, 0)] if rigid else [(0, 0, height)] * 5))
+    assert session.surface[4:, 2].min() > -STORED
+
+
 @pytest.mark.parametrize("content", ["crate", "rug"])
 def test_a_crate_in_a_room_rises_but_does_not_pass_its_floor(content: str) -> None:
     """The faces of the room look inward."""

@@ -176,11 +176,14 @@ Events CollisionQueries::find_cached(const Positions& from, State& to, Candidate
   {
     const ScopedTimer timer(execution.timings.detection);
     events = guard_->cache.find(place, context_.round_proximity(), execution);
-    excluded_.remove_from(events, *context_.proximity().reference, [&](Index vertex) -> Vector3 {
-      const auto own = static_cast<Index>(to.surface.rows());
-      if (vertex < own) return to.surface.row(vertex);
-      return context_.obstacles().row(vertex - own);
-    });
+    const auto row_of = [&](const Positions& surface) {
+      return [&](Index vertex) -> Vector3 {
+        const auto own = static_cast<Index>(surface.rows());
+        if (vertex < own) return surface.row(vertex);
+        return context_.obstacles().row(vertex - own);
+      };
+    };
+    excluded_.remove_from(events, *context_.proximity().reference, {row_of(from), row_of(to.surface)});
   }
   execution.timings.detection -= placing;
   execution.timings.deformation += placing;
@@ -203,7 +206,8 @@ std::optional<Events> CollisionQueries::find_not_excluded(Detector& detector, co
                                      : detector.find_within_pair_limit(from, to, proximity, execution);
   if (events)
     excluded_.remove_from(*events, *context_.proximity().reference,
-                          [&](Index vertex) -> Vector3 { return to.row(vertex); });
+                          {[&](Index vertex) -> Vector3 { return from.row(vertex); },
+                           [&](Index vertex) -> Vector3 { return to.row(vertex); }});
   return events;
 }
 

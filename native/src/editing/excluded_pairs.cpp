@@ -236,8 +236,7 @@ std::vector<Index> ExcludedPairs::triangles_with(const Index* begin, const Index
   return common;
 }
 
-bool ExcludedPairs::covers(const Event& event, const PositionsView& start,
-                           const std::function<Vector3(Index)>& end) const {
+bool ExcludedPairs::covers(const Event& event, const PositionsView& start, const Step& step) const {
   const Index *const begin = event.vertices.data(), *const split = begin + first_side_size(event.kind);
   const std::vector<Index> first = triangles_with(begin, split),
                            second = triangles_with(split, begin + event.vertices.size());
@@ -249,21 +248,57 @@ bool ExcludedPairs::covers(const Event& event, const PositionsView& start,
   if (first.empty() || second.empty()) {  // a loose edge or vertex
     const std::pair<Index, Index> bodies = std::minmax(surface_->body_of(*begin), surface_->body_of(*split));
     return std::binary_search(bodies_.begin(), bodies_.end(), bodies) &&
-           touch_at([&](Index vertex) -> Vector3 { return start.row(vertex); }) && touch_at(end);
+           touch_at([&](Index vertex) -> Vector3 { return start.row(vertex); }) && touch_at(step.to);
   }
-  bool touch = false;
+  bool touch = false, only_touch = false;  // of other faces of a body, or of parts
   for (const Index a : first)
     for (const Index b : second) {
-      if (is_among(pairs_, a, b) || is_among(flush_, a, b)) continue;
-      if (!is_among(shallow_only_, a, b)) return false;
-      touch = true;
+      if (is_among(pairs_, a, b)) continue;
+      if (is_among(flush_, a, b))
+        only_touch = true;
+      else if (is_among(shallow_only_, a, b))
+        touch = true;
+      else
+        return false;
     }
-  return !touch || touch_at(end);
+  return (!touch || touch_at(step.to)) && (!only_touch || stays_on_its_side(event, first, second, step));
 }
 
-void ExcludedPairs::remove_from(Events& events, const PositionsView& start,
-                                const std::function<Vector3(Index)>& end) const {
-  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, start, end); });
+/// Whether the two primitives of an event, of parts that only touch at the start, touch at the start of the step, or
+/// are parted by a plane at its start and its end. Along the normal n of the plane, the most of the lower one minus the
+/// least of the upper one is convex in time, so it parts them in between, too. Otherwise one may have passed the other.
+bool ExcludedPairs::stays_on_its_side(const Event& event, const std::vector<Index>& first,
+                                      const std::vector<Index>& second, const Step& step) const {
+  if (event.start_distance <= rounding()) return true;  // the end of the step tells
+  const auto part = [&](const Vector3& normal) {
+    return overlap_along(event, normal, step.from) < rounding() && overlap_along(event, normal, step.to) < rounding();
+  };
+  for (const auto* triangles : {&first, &second})
+    for (const Index triangle : *triangles)
+      for (const auto* position : {&step.from, &step.to}) {
+        const auto corner = [&](int k) { return (*position)(surface_->triangles()(triangle, k)); };
+        const Vector3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
+        if (part(normal) || part(-normal)) return true;
+      }
+  return false;
+}
+
+/// How far the two primitives of an event overlap along a direction from the second to the first; negative if apart.
+double ExcludedPairs::overlap_along(const Event& event, const Vector3& direction,
+                                    const std::function<Vector3(Index)>& position) const {
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (int k = 0; k < 4; ++k) {
+    const double height = direction.dot(position(event.vertices[at(k)]));
+    if (k < first_side_size(event.kind))
+      lowest = std::min(lowest, height);
+    else
+      highest = std::max(highest, height);
+  }
+  return highest - lowest;
+}
+
+void ExcludedPairs::remove_from(Events& events, const PositionsView& start, const Step& step) const {
+  if (!empty()) std::erase_if(events, [&](const Event& event) { return covers(event, start, step); });
 }
 
 void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Positions& to) const {

@@ -49,12 +49,18 @@ class ExcludedPairs {
   bool empty() const { return all_.empty(); }
   const IndexPairs& pairs() const { return all_; }  ///< sorted, with the smaller index first
 
+  /// The positions of each vertex at the start and the end of a step.
+  struct Step {
+    std::function<Vector3(Index)> from, to;
+  };
+
   /// Removes the events that belong only to excluded pairs. Those of pairs that touch stay if their primitives are
   /// further apart than rounding at the end of the step: they have passed through each other. So do those of loose
-  /// edges and vertices that touched at the start.
-  /// @param start positions of all vertices at the start of the session, about any origin
-  /// @param end position of a vertex at the end of the step, about the same one
-  void remove_from(Events& events, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
+  /// edges and vertices that touched at the start, and those of parts that only touched there, unless a plane parts
+  /// their primitives at both ends of the step.
+  /// @param start positions of all vertices at the start of the session, about any origin; those of the step are about
+  /// the same one
+  void remove_from(Events& events, const PositionsView& start, const Step& step) const;
 
   /// Adds an event for each pair of parts that only touch at the start of a session, and that intersects deeper than
   /// rounding at the end of a step, or of which one has passed the other: a plane that parts the two
@@ -87,7 +93,11 @@ class ExcludedPairs {
   std::vector<Index> with_neighbors(Index triangle) const;
   void find_others_that_touch(const PositionsView& start, Execution& execution);
   IndexPairs bodies_of(const IndexPairs& pairs) const;
-  bool covers(const Event& event, const PositionsView& start, const std::function<Vector3(Index)>& end) const;
+  bool covers(const Event& event, const PositionsView& start, const Step& step) const;
+  bool stays_on_its_side(const Event& event, const std::vector<Index>& first, const std::vector<Index>& second,
+                         const Step& step) const;
+  double overlap_along(const Event& event, const Vector3& direction,
+                       const std::function<Vector3(Index)>& position) const;
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
   std::shared_ptr<const Surface> surface_;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
+
+#include "penetration/winding_numbers.hpp"
 
 namespace stiv {
 
@@ -66,16 +67,6 @@ std::optional<Vector3> centroid_of(const Polygon& polygon, double width) {
   return moment / area;
 }
 
-/// Signed volume between a triangle and the origin.
-double volume_under(const Corners& corners) { return corners[0].dot(corners[1].cross(corners[2])) / 6; }
-
-/// The solid angle of a triangle, seen from a point. [Van Oosterom and Strackee 1983]
-double solid_angle(const Corners& corners, const Vector3& point) {
-  const Vector3 a = corners[0] - point, b = corners[1] - point, c = corners[2] - point;
-  const double x = a.norm(), y = b.norm(), z = c.norm();
-  return 2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
-}
-
 }  // namespace
 
 Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::array<Index, 3> second,
@@ -93,27 +84,27 @@ Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::arra
 FacingParts::FacingParts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
                          const PositionsView& start, double rounding)
     : triangles_(surface.triangles()), rounding_(rounding) {
-  find_parts(parts, flush, start);
+  find_parts(surface, parts, flush, start);
   for (const auto& [a, b] : flush)
     for (const auto& [face, base] : {std::pair(a, b), std::pair(b, a)})
       if (const auto facing = facing_of(face, base, parts, start)) facing_.push_back(*facing);
 }
 
-void FacingParts::find_parts(const SurfaceParts& parts, const IndexPairs& flush, const PositionsView& start) {
+void FacingParts::find_parts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
+                             const PositionsView& start) {
+  std::map<Index, std::vector<Index>> triangles;
   for (const auto& [a, b] : flush)
-    for (const Index triangle : {a, b}) parts_.try_emplace(parts.of(triangle));
-  if (parts_.empty()) return;
+    for (const Index triangle : {a, b}) triangles.try_emplace(parts.of(triangle));
+  if (triangles.empty()) return;
   for (Index triangle = 0; triangle < static_cast<Index>(triangles_.rows()); ++triangle)
-    if (const auto found = parts_.find(parts.of(triangle)); found != parts_.end() && parts.is_first(triangle))
-      found->second.triangles.push_back(triangle);
-  for (auto& [name, part] : parts_) {
-    double volume = 0;
-    for (const Index triangle : part.triangles) {
-      const Corners corners = corners_of(triangles_, triangle, start);
-      volume += volume_under(corners);
-      for (const Vector3& corner : corners) part.box.extend(corner);
-    }
-    part.side = volume < 0 ? 1 : -1;
+    if (const auto found = triangles.find(parts.of(triangle)); found != triangles.end() && parts.is_first(triangle))
+      found->second.push_back(triangle);
+  for (auto& [name, own] : triangles) {
+    Part& part = parts_[name];
+    part.mesh = body_mesh(surface, std::move(own));
+    const PlacedBody placed(part.mesh, start);
+    part.box = placed.box();
+    part.side = placed.signed_volume() < 0 ? 1 : -1;
   }
 }
 
@@ -158,13 +149,7 @@ bool FacingParts::has_passed(const Facing& facing, const PositionsView& q, Vecto
   const Part& part = parts_.at(facing.parts.second);
   if (facing.parts.first == facing.parts.second)  // off its own part
     point -= part.side * rounding_ * normal_of(corners_of(triangles_, facing.face, q));
-  return (std::abs(winding_number(part, q, point)) > 0.5) != facing.is_enclosed;
-}
-
-double FacingParts::winding_number(const Part& part, const PositionsView& q, const Vector3& point) const {
-  double angle = 0;
-  for (const Index triangle : part.triangles) angle += solid_angle(corners_of(triangles_, triangle, q), point);
-  return angle / (4 * std::numbers::pi);
+  return (winding_number(PlacedBody(part.mesh, q), point, 1) != 0) != facing.is_enclosed;
 }
 
 std::optional<std::pair<Index, Index>> FacingParts::find_passed(const PositionsView& q, double depth) const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "editing/surface_parts.hpp"
+#include "penetration/body_mesh.hpp"
 #include "stiv/acceptance/intersections.hpp"
 #include "stiv/detection/event.hpp"
 #include "stiv/surface.hpp"
@@ -55,17 +56,17 @@ class FacingParts {
   };
   /// A part of any facing triangle.
   struct Part {
-    std::vector<Index> triangles;
+    BodyMesh mesh;
     Eigen::AlignedBox3d box;  // at the start
     double side;              // on which its faces enclose it: -1 behind them, 1 in front
   };
 
-  void find_parts(const SurfaceParts& parts, const IndexPairs& flush, const PositionsView& start);
+  void find_parts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
+                  const PositionsView& start);
   std::optional<Facing> facing_of(Index face, Index base, const SurfaceParts& parts, const PositionsView& start) const;
   Vector3 free_side(const Facing& facing, const PositionsView& q) const;
   std::optional<Vector3> point_below(const Facing& facing, const PositionsView& q, double depth) const;
   bool has_passed(const Facing& facing, const PositionsView& q, Vector3 point) const;
-  double winding_number(const Part& part, const PositionsView& q, const Vector3& point) const;
 
   Triangles triangles_;
   double rounding_ = 0;

@@ -70,7 +70,7 @@ BodyMesh body_mesh(const Surface& surface, std::vector<Index> triangles) {
   return mesh;
 }
 
-PlacedBody::PlacedBody(const BodyMesh& mesh, const Positions& q) : mesh_(mesh) {
+PlacedBody::PlacedBody(const BodyMesh& mesh, const PositionsView& q) : mesh_(mesh) {
   for (const Index vertex : mesh.vertices) {
     points_.push_back(q.row(vertex));
     box_.extend(points_.back());

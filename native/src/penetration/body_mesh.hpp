@@ -26,7 +26,7 @@ BodyMesh body_mesh(const Surface& surface, std::vector<Index> triangles);
 class PlacedBody {
  public:
   /// @param q (N, 3) positions of the whole surface
-  PlacedBody(const BodyMesh& mesh, const Positions& q);
+  PlacedBody(const BodyMesh& mesh, const PositionsView& q);
 
   const BodyMesh& mesh() const { return mesh_; }
   Index triangle_count() const { return static_cast<Index>(mesh_.triangles.size()); }

@@ -116,18 +116,9 @@ def take_snapshot_steps(
     chosen = replace(settings, excluded=excluded)
     deforms = all(each.role != "rigid" or each.placed is not None for each in control_sets if each.rule.moves)
     return EditSnapshot(
-        assembly,
-        control_sets,
-        chosen,
-        guard,
-        scene.hidden,
-        dropped_exclusions,
-        placements,
-        carried,
-        frame,
-        cutting,
+        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame, cutting,
         may_touch=deforms and cutting is not None,
-    )
+    )  # fmt: skip
 
 
 def _is_animated(context: bpy.types.Context, participant: Participant) -> bool:

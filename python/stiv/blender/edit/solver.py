@@ -106,10 +106,11 @@ class EditSolver:
         return self._session is not None
 
     @property
-    def touches_others(self) -> bool:
-        """Does an object that moves touch one that does not?"""
+    def touching_others(self) -> list[Names]:
+        """The names of an object that moves and one that does not, for each two that touch, ascending."""
         moving = self._moving(self.assembly)
-        return any(name.partition(PART)[0] not in moving for names in self.touching.objects for name in names)
+        pairs = {(a.partition(PART)[0], b.partition(PART)[0]) for a, b in self.touching.objects}
+        return sorted(pair for pair in pairs if len(moving.intersection(pair)) == 1)
 
     @property
     def session(self) -> stiv.EditSession:

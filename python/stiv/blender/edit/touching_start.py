@@ -98,14 +98,20 @@ def start_apart_steps(
 
 
 def _start_touching_steps(snapshot: EditSnapshot) -> Steps[Started]:
-    """Steps that start where objects may touch others; if they do, with a minimum distance that they already have."""
+    """Steps that start where objects may touch others; if they do, with a minimum distance that they already have.
+
+    They keep the automatic one from themselves: a part thinner than rounding would have no side.
+    """
     solver = yield from start_solver_steps(snapshot)
-    if not solver.touches_others or snapshot.settings.separation > 0:
+    settings, touching = snapshot.settings, solver.touching_others
+    if not touching or settings.separation > 0:
         return snapshot, solver
     moving = {index for each in snapshot.control_sets if each.rule.moves for index in each.surfaces}
     meshes = [snapshot.assembly.meshes[index] for index in sorted(moving)]
-    gap = GAP * max(rounding_of(SURPLUS * points) for mesh in meshes for points in (mesh.world(), mesh.local))
-    kept = replace(snapshot, settings=replace(snapshot.settings, separation=KEPT * gap))
+    least = KEPT * GAP * max(rounding_of(SURPLUS * points) for mesh in meshes for points in (mesh.world(), mesh.local))
+    chosen = {frozenset(pair[:2]) for pair in settings.pair_separations}
+    pairs = tuple((*names, least) for names in touching if frozenset(names) not in chosen)
+    kept = replace(snapshot, settings=replace(settings, pair_separations=(*settings.pair_separations, *pairs)))
     try:
         return kept, (yield from start_solver_steps(kept))
     except InputError:  # a stretched frame keeps larger distances only
