@@ -142,6 +142,11 @@ def moved(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
     return points @ matrix[:3, :3].T + matrix[:3, 3]
 
 
+def matrices(objects: list[Any]) -> np.ndarray:
+    """World matrices, (n, 4, 4)."""
+    return np.array([np.array(ob.matrix_world) for ob in objects])
+
+
 def snapshot() -> dict[str, Any]:
     """Everything of the scene that an edit might touch, to the last bit."""
     return {ob.name: _object(ob) for ob in bpy.data.objects} | {

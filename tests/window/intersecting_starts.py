@@ -135,6 +135,22 @@ def start_touching(window: Window) -> Steps:
     assert box_x() == before, (box_x(), before)
 
 
+def turned_with_the_box(window: Window, other: bpy.types.Object, picture: str) -> Steps:
+    """Turn the box and another object by a typed angle, which both reach."""
+    other.select_set(True)
+    with window.override():
+        bpy.ops.ed.undo_push(message="both")
+    yield from window.settle()
+    yield from start(window, "R")
+    yield from window.type("40")
+    yield from window.settle()
+    window.picture(picture)
+    window.key("RET")
+    yield from ended(window)
+    for obj in (box(), other):
+        expect_near(math.degrees(obj.rotation_euler.z), 40.0, 1e-3, f"the angle of {obj.name}")
+
+
 def start_touching_each_other(window: Window) -> Steps:
     """Two boxes, one on the other, both selected: they turn by a typed angle at once, and the wall stops both."""
 
@@ -144,18 +160,7 @@ def start_touching_each_other(window: Window) -> Steps:
 
     yield from prepared(window, build, "Box")
     upper = bpy.data.objects["Upper"]
-    upper.select_set(True)
-    with window.override():
-        bpy.ops.ed.undo_push(message="both")
-    yield from window.settle()
-    yield from start(window, "R")
-    yield from window.type("40")
-    yield from window.settle()
-    window.picture("start_touching_each_other")
-    window.key("RET")
-    yield from ended(window)
-    for obj in (box(), upper):
-        expect_near(math.degrees(obj.rotation_euler.z), 40.0, 1e-3, f"the angle of {obj.name}")
+    yield from turned_with_the_box(window, upper, "start_touching_each_other")
     across = Vector(upper.location) - Vector(box().location)
     expect_near(across.angle(Vector((0.1, 2 * HALF, 0.0))), math.radians(40.0), 1e-4, "the turn of both")
     yield from window.undo()
@@ -176,18 +181,8 @@ def start_cutting_each_other(window: Window) -> Steps:
 
     yield from prepared(window, build, "Box")
     tip = bpy.data.objects["Tip"]
-    tip.select_set(True)
-    with window.override():
-        bpy.ops.ed.undo_push(message="both")
     before = Vector(tip.location) - Vector(box().location)
-    yield from start(window, "R")
-    yield from window.type("40")
-    yield from window.settle()
-    window.picture("start_cutting_each_other")
-    window.key("RET")
-    yield from ended(window)
-    for obj in (box(), tip):
-        expect_near(math.degrees(obj.rotation_euler.z), 40.0, 1e-3, f"the angle of {obj.name}")
+    yield from turned_with_the_box(window, tip, "start_cutting_each_other")
     yield from window.undo()
     yield from window.rest_at((0.0, 0.0, 0.0))
     yield from start(window)

@@ -95,13 +95,17 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Given
     : surface_(std::move(surface)), least_(least) {
   const IndexPairs pairs = checked(given.pairs, static_cast<Index>(surface_->triangles().rows()));
   bodies_ = bodies_of(pairs);
-  if (pairs.empty() && given.touching.size() < 2) return;
-  const SurfaceParts parts(*surface_);
-  take_given(pairs, given.parts_may_cut, parts, start);
-  take_contacts(given, parts, start, execution);
+  divide_given(pairs, start);
+  pairs_ = pairs;
+  const IndexPairs contacts = contacts_of(given, start, execution);
+  if (!contacts.empty() || (!given.parts_may_cut && !shallow_.empty())) {
+    const SurfaceParts parts(*surface_);
+    if (!given.parts_may_cut) take_flush(parts, start);
+    take_contacts(contacts, parts, start);
+    facing_ = FacingParts(*surface_, parts, flush_, start, rounding());
+    for (const auto& [a, b] : flush_) flush_parts_.emplace_back(parts.of(a), parts.of(b));
+  }
   if (pairs_.empty() && flush_.empty()) return;
-  facing_ = FacingParts(*surface_, parts, flush_, start, rounding());
-  for (const auto& [a, b] : flush_) flush_parts_.emplace_back(parts.of(a), parts.of(b));
   list_triangles_around_vertices();
   add_touching(start);
   find_others_that_touch(start, execution);
@@ -118,15 +122,12 @@ void ExcludedPairs::list_triangles_around_vertices() {
     }
 }
 
-/// Divides the given pairs by their depth, and by whether their parts only touch.
-void ExcludedPairs::take_given(const IndexPairs& pairs, bool parts_may_cut, const SurfaceParts& parts,
-                               const PositionsView& start) {
+/// Divides the given pairs by their depth.
+void ExcludedPairs::divide_given(const IndexPairs& pairs, const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
   for (const auto& pair : pairs)
     if (placed.intersect(pair.first, pair.second))
       (placed.intersect_deeper(pair.first, pair.second, rounding()) ? deep_ : shallow_).push_back(pair);
-  if (!parts_may_cut) take_flush(parts, start);
-  std::set_difference(pairs.begin(), pairs.end(), flush_.begin(), flush_.end(), std::back_inserter(pairs_));
 }
 
 /// Takes the shallow pairs of parts that only touch.
@@ -140,16 +141,19 @@ void ExcludedPairs::take_flush(const SurfaceParts& parts, const PositionsView& s
   };
   std::copy_if(shallow_.begin(), shallow_.end(), std::back_inserter(flush_), is_flush);
   std::erase_if(shallow_, is_flush);
+  std::erase_if(pairs_, [&](const auto& pair) { return is_among(flush_, pair.first, pair.second); });
 }
 
-/// Takes the pairs of bodies that may touch, where parts of them only touch. One is closed: of two sheets, none would
-/// be guarded by the faces on its other side.
-void ExcludedPairs::take_contacts(const Given& given, const SurfaceParts& parts, const PositionsView& start,
-                                  Execution& execution) {
+/// The pairs of triangles, of bodies that may touch, that intersect or touch.
+IndexPairs ExcludedPairs::contacts_of(const Given& given, const PositionsView& start, Execution& execution) const {
   IndexPairs bodies = bodies_within_reach(*surface_, given.touching, start, rounding());
   std::erase_if(bodies, [&](const auto& pair) { return is_among(given.overlapping, pair.first, pair.second); });
-  const IndexPairs contacts = find_contacts(surface_, bodies, start, rounding(), execution);
-  if (contacts.empty()) return;
+  return find_contacts(surface_, bodies, start, rounding(), execution);
+}
+
+/// Takes the contacts of parts that only touch. One of both is closed: of two sheets, none would be guarded by the
+/// faces on its other side.
+void ExcludedPairs::take_contacts(const IndexPairs& contacts, const SurfaceParts& parts, const PositionsView& start) {
   const PlacedTriangles placed{surface_->triangles(), start};
   IndexPairs cutting;
   for (const auto& pair : contacts)

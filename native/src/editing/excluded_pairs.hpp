@@ -81,9 +81,10 @@ class ExcludedPairs {
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
   double rounding() const { return 4 * least_; }
-  void take_given(const IndexPairs& pairs, bool parts_may_cut, const SurfaceParts& parts, const PositionsView& start);
+  void divide_given(const IndexPairs& pairs, const PositionsView& start);
+  IndexPairs contacts_of(const Given& given, const PositionsView& start, Execution& execution) const;
   void take_flush(const SurfaceParts& parts, const PositionsView& start);
-  void take_contacts(const Given& given, const SurfaceParts& parts, const PositionsView& start, Execution& execution);
+  void take_contacts(const IndexPairs& contacts, const SurfaceParts& parts, const PositionsView& start);
   void list_triangles_around_vertices();
   std::optional<Vector3> common_parting(const std::vector<FacingParts::Parting>& partings,
                                         const std::pair<Index, Index>& parts, const std::array<Index, 3>& first,

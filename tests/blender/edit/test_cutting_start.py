@@ -7,7 +7,7 @@ from typing import Any
 import bpy
 import numpy as np
 import pytest
-from building import add, add_cube, add_grid, meet, select, shift, snapshot, stretch, turn
+from building import add, add_cube, add_grid, matrices, meet, select, shift, snapshot, stretch, turn
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -35,10 +35,6 @@ def cluster(seed: int, count: int = 3) -> list[Any]:
 
 def begin(kind: str = "move", **changes: Any) -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, EditSettings(**changes), kind)
-
-
-def matrices(objects: list[Any]) -> np.ndarray:
-    return np.array([np.array(ob.matrix_world) for ob in objects])
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -12,6 +12,7 @@ from building import (
     add_modifier,
     deepest,
     edit_mode,
+    matrices,
     select,
     shift,
     snapshot,
@@ -48,10 +49,6 @@ def tower(seed: int, count: int = 3) -> tuple[list[Any], np.ndarray]:
 
 def begin(kind: str = "move") -> BlenderEdit:
     return BlenderEdit.begin(bpy.context, EditSettings(), kind)
-
-
-def matrices(objects: list[Any]) -> np.ndarray:
-    return np.array([np.array(ob.matrix_world) for ob in objects])
 
 
 @pytest.mark.parametrize("kind", KINDS)

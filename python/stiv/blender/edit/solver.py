@@ -22,8 +22,7 @@ from stiv.blender.edit.trail import AcceptedState, Trail, find_latest_steps
 from stiv.blender.excluded_faces import Exclusions
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
-from stiv.blender.scene.elements import PART
-from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded, with_touching
+from stiv.blender.scene.exclusions import exclude_undecided, has_only_excluded, pairs_of_objects, with_touching
 from stiv.blender.scene.loose_parts import find_touching_parts, loose_part_notes, without_loose_parts
 from stiv.blender.scene.triangulation_flips import FaceTriangles, add_triangles, guard_bent_quads
 from stiv.blender.settings import EditSettings
@@ -109,8 +108,7 @@ class EditSolver:
     def touching_others(self) -> list[Names]:
         """The names of an object that moves and one that does not, for each two that touch, ascending."""
         moving = self._moving(self.assembly)
-        pairs = {(a.partition(PART)[0], b.partition(PART)[0]) for a, b in self.touching.objects}
-        return sorted(pair for pair in pairs if len(moving.intersection(pair)) == 1)
+        return sorted(pair for pair in pairs_of_objects(self.touching) if len(moving.intersection(pair)) == 1)
 
     @property
     def session(self) -> stiv.EditSession:
@@ -251,9 +249,8 @@ class EditSolver:
         """Raise SelectionCutsItselfError for pairs that should move as one."""
         if self._cutting is None:
             return
-        names = {(a.partition(PART)[0], b.partition(PART)[0]) for a, b in pairs.objects}
         rigid = _moved_by(assembly, [each for each in self.control_sets if each.role == "rigid" and not each.placed])
-        found = frozenset(pair for pair in names if rigid.issuperset(pair))
+        found = frozenset(pair for pair in pairs_of_objects(pairs) if rigid.issuperset(pair))
         if not found <= self._cutting:
             raise SelectionCutsItselfError(found | self._cutting)
 

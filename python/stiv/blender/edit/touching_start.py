@@ -25,8 +25,8 @@ from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices
 from stiv.blender.edit.solver import EditSolver, start_solver_steps
 from stiv.blender.scene.arrays import Flags, Floats, Indices, extents, transform_points
 from stiv.blender.scene.assembly import Assembly, assemble_against_others
-from stiv.blender.scene.elements import PART
 from stiv.blender.scene.evaluated_scene import VisibleMesh
+from stiv.blender.scene.exclusions import pairs_of_objects
 from stiv.blender.scene.references import SceneChangedError
 from stiv.task import Steps
 from stiv.touching import are_touching, find_parting, rounding_of
@@ -210,7 +210,7 @@ class _Movers:
         gap = GAP * max(rounding_of(SURPLUS * points), *map(_rounding_of_places, sets))
         meshes = tuple(index for each in sets for index in each.surfaces)
         names = frozenset(assembly.meshes[index].owner.name for index in meshes)
-        passing = [(a.partition(PART)[0], b.partition(PART)[0]) for a, b in settings.excluded.objects]
+        passing = sorted(pairs_of_objects(settings.excluded))
         are_alone = all(each.role == "rigid" for each in snapshot.control_sets)
         return cls(sets, meshes, names, gap, (*settings.ignored_pairs, *passing), are_alone)
 

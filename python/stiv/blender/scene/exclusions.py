@@ -70,6 +70,11 @@ def needs_no_decision(first: Element, second: Element, together: Collection[str]
     return first.object == second.object or (first.object in together and second.object in together)
 
 
+def pairs_of_objects(excluded: Exclusions) -> set[tuple[str, str]]:
+    """The names of different objects with excluded faces, without the numbers of parts."""
+    return {(a.partition(PART)[0], b.partition(PART)[0]) for a, b in excluded.objects}
+
+
 def intersecting_faces(assembly: Assembly, found: Indices) -> tuple[tuple[str, str, int], ...]:
     """Pairs of different objects in pairs of triangles, (k, 2), with the number of their faces."""
     pairs = assembly.face_pairs(found)[0].by_objects()
