@@ -95,9 +95,8 @@ def esc_during_a_typed_value(window: Window) -> Steps:
     window.key("X")
     yield from window.until(lambda: drag_of_window().state.axis_lock.axis == 0, "the axis lock")
     window.key("RET")
-    yield from window.until(
-        lambda: drag_of_window() is None or drag_of_window().fraction > 0.1, "a part of the way", 120.0
-    )
+    yield from window.until(lambda: progress_of_drag() != "RUNNING", "the confirmation")
+    yield from window.until(lambda: solved_part() > 0.1, "a part of the way", 120.0)
     assert progress_of_drag() == "FINISHING", "the value was solved for before Esc"
     window.picture("esc_during_a_typed_value")
     window.key("ESC")
