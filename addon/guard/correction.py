@@ -22,7 +22,7 @@ class Outcome:
     """The outcome of a test or a correction.
 
     Attributes:
-        pairs: what intersects now, without excluded pairs.
+        pairs: what cuts or touches now, without excluded pairs.
         reason: why a change was not corrected; "" otherwise.
         failed: the scene could not be tested, for this reason.
         wrote: whether anything was written.
@@ -57,8 +57,9 @@ def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedSce
         guarded = yield from stiv_blender.guard_result_steps(context, settings, accepted)
     except ValueError as error:
         return Outcome(reason=message_text(error), failed=True)
-    reason = message_text(guarded.reason) if guarded.pairs else ""
-    if guarded.pairs and guarded.deformers:
+    cutting = stiv_blender.KnownIntersections(guarded.pairs).cutting
+    reason = message_text(guarded.reason) if cutting else ""
+    if cutting and guarded.deformers:
         reason = _naming(translate("{} cannot be corrected"), guarded.deformers)
     return Outcome(guarded.pairs, reason, wrote=guarded.wrote, text=_text(guarded))
 

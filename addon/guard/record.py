@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -37,9 +37,9 @@ class Record:
         if self.accepted is not None:
             self.accepted = self.accepted.with_selection(context)
 
-    def allows(self, pairs: Iterable[stiv_blender.FacePair], restored: bool) -> bool:
-        """Whether pairs may intersect: they do in the accepted scene, or undo and redo restored them."""
-        known = frozenset() if self.accepted is None else _with_joined(self.accepted.known.objects)
+    def allows(self, pairs: Sequence[stiv_blender.FacePair], restored: bool) -> bool:
+        """Whether pairs may intersect: they only touch, cut in the accepted scene, or undo and redo restored them."""
+        known = frozenset() if self.accepted is None else _with_joined(self.accepted.known.cutting_objects)
         return objects_of(pairs) <= (self.seen if restored else known)
 
     def accept(self, context: bpy.types.Context, outcome: Outcome, restored: bool) -> bool:
@@ -51,7 +51,7 @@ class Record:
             self.problem = Problem(reason=outcome.reason)
             return True
         now = objects_of(outcome.pairs)
-        before = now if self.accepted is None else _with_joined(self.accepted.known.objects)
+        before = now if self.accepted is None else _with_joined(self.accepted.known.cutting_objects)
         added = now - before - (self.seen if restored else frozenset())
         self.seen |= now
         self.uncorrected |= added
@@ -65,7 +65,8 @@ class Record:
         """The rest of uncorrected results in an outcome; None if nothing is."""
         if outcome.failed:
             return Problem(reason=outcome.reason)
-        left = tuple(pair for pair in outcome.pairs if stiv_blender.object_pair(pair) in self.uncorrected)
+        cutting = stiv_blender.KnownIntersections(outcome.pairs).cutting
+        left = tuple(pair for pair in cutting if stiv_blender.object_pair(pair) in self.uncorrected)
         if not left:
             return None
         earlier = self.problem.reason if self.problem is not None and not self.problem.known else ""
@@ -73,12 +74,13 @@ class Record:
 
     def _problem(self, outcome: Outcome) -> Problem | None:
         left = self.uncorrected_of(outcome)
-        return left or (Problem(outcome.pairs, known=True) if outcome.pairs else None)
+        cutting = stiv_blender.KnownIntersections(outcome.pairs).cutting
+        return left or (Problem(cutting, known=True) if cutting else None)
 
 
-def objects_of(pairs: Iterable[stiv_blender.FacePair]) -> Pairs:
-    """The pairs of objects of pairs of elements."""
-    return frozenset(map(stiv_blender.object_pair, pairs))
+def objects_of(pairs: Sequence[stiv_blender.FacePair]) -> Pairs:
+    """The pairs of objects that cut each other in pairs of elements."""
+    return stiv_blender.KnownIntersections(pairs).cutting_objects
 
 
 def _with_joined(known: Pairs) -> Pairs:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv.arrays import Floats, Indices
 from stiv.intersections import IntersectionTest, intersection_depths
-from stiv.surface import Surface
+from stiv.surface import Body, Surface
 
 _Flags = NDArray[np.bool_]
 
@@ -23,6 +23,8 @@ _MOST_AXES = 64  # directions that separate pairs, the most frequent ones
 _MOST_CHOSEN = 8  # of these that a translation combines
 _ROUNDS = 4  # of translations, after each of which other triangles may touch
 _LONGEST = 8  # of a translation, in the depth and the gap of one contact
+_SHRUNK = 8  # depths, of the least extent
+_ALIKE = 0.9999  # cosine of the angle of normals that face the same way
 _SAME = 1e-5  # components of unit vectors that differ by less belong to one direction
 
 
@@ -33,14 +35,91 @@ def rounding_of(points: Floats) -> float:
 
 def are_touching(first: Floats, second: Floats) -> bool:
     """Return whether triangles, (k, 3, 3) each, cut no deeper than rounding into those of the same row."""
-    tolerance, end = _tolerance(first, second), len(first)
-    for begin, stop in ((0, min(_FIRST, end)), (_FIRST, end)):
-        points = np.concatenate([first[begin:stop], second[begin:stop]]).reshape(-1, 3)
-        triangles = np.arange(len(points), dtype=np.int32).reshape(-1, 3)
-        pairs = np.arange(len(triangles), dtype=np.int32).reshape(2, -1).T
-        if intersection_depths(points, triangles, pairs).max(initial=0.0) > tolerance:
-            return False
-    return True
+    return _cut_at_most(_tolerance(first, second), first, second)
+
+
+def _cut_at_most(depth: float, first: Floats, second: Floats) -> bool:
+    end = len(first)
+    parts = ((0, min(_FIRST, end)), (_FIRST, end))
+    return all(_depths(first[begin:stop], second[begin:stop]).max(initial=0.0) <= depth for begin, stop in parts)
+
+
+def _depths(first: Floats, second: Floats) -> Floats:
+    """How deep triangles, (k, 3, 3) each, cut into those of the same row, (k,)."""
+    points = np.concatenate([first, second]).reshape(-1, 3)
+    triangles = np.arange(len(points), dtype=np.int32).reshape(-1, 3)
+    return intersection_depths(points, triangles, np.arange(len(triangles), dtype=np.int32).reshape(2, -1).T)
+
+
+def touching_from_outside(first: Floats, second: Floats, group: Indices, depth: float) -> _Flags:
+    """Return which groups of rows, (g,), are contacts of two surfaces beside each other.
+
+    first, second  triangles, (k, 3, 3) each, that intersect those of the same row
+    group          (k,) numbers from 0 of two surfaces that meet in these rows
+    depth          the deepest that counts as touching
+
+    No triangle of these groups cuts deeper, none covers a part of one in its plane that faces the same way, and some
+    translation of the size of the depth parts the two surfaces there. So they do not cross each other along edges.
+    """
+    count = int(group.max(initial=-1)) + 1
+    is_deep = (_depths(first, second) > depth) | _cover(first, second, depth)
+    touching: _Flags = np.bincount(group[is_deep], minlength=count) == 0
+    for number in np.flatnonzero(touching & ~_lie_on_each_other(first, second, group, count, depth)).tolist():
+        own = group == number
+        sides = [np.unique(each[own].reshape(-1, 9), axis=0).reshape(-1, 3, 3) for each in (first, second)]
+        touching[number] = _are_beside(*sides, depth) or _can_part(*sides, depth)
+    return touching
+
+
+def _lie_on_each_other(first: Floats, second: Floats, group: Indices, count: int, depth: float) -> _Flags:
+    """Flags the groups, (count,), in which the plane of two triangles that face each other separates all, but for the
+    depth. Faster than `_are_beside` for one after the other.
+    """
+    normals = [_normals(each) for each in (first, second)]
+    areas = np.linalg.norm(normals, axis=2).min(axis=0)
+    facing = np.flatnonzero(np.einsum("kj,kj->k", *map(_unit, normals)) < -_ALIKE)
+    facing = facing[np.argsort(areas[facing], kind="stable")]
+    best = np.full(count, -1)
+    best[group[facing]] = facing  # the last of equal groups remains: the largest
+    axes = np.where((best >= 0)[:, None], _unit(normals[0])[best], 0.0)[group]
+    heights = [np.einsum("kcj,kj->kc", each, axes) for each in (first, second)]
+    low, high = np.full((2, count), np.inf), np.full((2, count), -np.inf)
+    for side, each in enumerate(heights):
+        np.minimum.at(low[side], group, each.min(axis=1))
+        np.maximum.at(high[side], group, each.max(axis=1))
+    overlaps = np.minimum(high[0] - low[1], high[1] - low[0])
+    separated: _Flags = (best >= 0) & (overlaps <= depth)
+    return separated
+
+
+def _are_beside(first: Floats, second: Floats, depth: float) -> bool:
+    """Does a plane of one of the triangles, (n, 3, 3) and (m, 3, 3), separate them, but for the depth?"""
+    normals = np.concatenate([_normals(first), _normals(second)])
+    normals = normals[np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")]  # those of large ones are exact
+    axes = _unit(normals)
+    axes = axes[np.unique(np.round(axes / _SAME), axis=0, return_index=True)[1]]
+    a, b = (each.reshape(-1, 3) @ axes.T for each in (first, second))
+    overlaps = np.minimum(a.max(axis=0) - b.min(axis=0), b.max(axis=0) - a.min(axis=0))
+    return bool((overlaps[axes.any(axis=1)] <= depth).any())
+
+
+def _can_part(first: Floats, second: Floats, depth: float) -> bool:
+    """Does a translation, or a shrinking, of the size of the depth part two sets of triangles, (n, 3, 3) and (m, 3, 3)?
+
+    What is held between two walls shrinks.
+    """
+    corners = np.concatenate([first, second]).reshape(-1, 3)
+    triangles = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
+    moves = np.arange(len(corners)) < 3 * len(first)
+    bodies = [Body("second", "fixed"), Body("first", "rigid")]
+    surface = Surface(triangles, len(corners), vertex_body=moves.astype(np.int32), bodies=bodies)
+    if find_parting(surface, corners, moves, depth, deepest=depth) is not None:
+        return True
+    middle, extent = first.min(axis=(0, 1)) / 2 + first.max(axis=(0, 1)) / 2, np.ptp(first, axis=(0, 1)).min()
+    if extent < _SHRUNK * depth:
+        return False
+    corners[moves] += (middle - corners[moves]) * (_SHRUNK * depth / extent)
+    return len(IntersectionTest(surface).find(corners)) == 0
 
 
 def find_parting(
@@ -51,6 +130,7 @@ def find_parting(
     free: ArrayLike | None = None,
     near: Sequence[tuple[int, int]] = (),
     threads: int = 0,
+    deepest: float | None = None,
 ) -> Floats | None:
     """Return the least translation found, (3,), of the moving vertices after which no triangles intersect.
 
@@ -60,6 +140,7 @@ def find_parting(
     gap        distance by which those that touch are parted
     free       (3, 3) projection to the directions that the translation may have; None: all
     near       pairs of triangles, (k, 2), that do not touch but are nearer than the gap, and are parted too
+    deepest    depth that still counts as touching; None: that of rounding
 
     The result is exact in that nothing intersects there. Returns None if something cuts deeper than rounding, or
     no translation of that size parts everything.
@@ -72,7 +153,7 @@ def find_parting(
         if len(found) == 0 and (number > 0 or len(pairs) == 0):
             return shift
         pairs = np.concatenate([pairs, found])
-        contacts = _Contacts(vertices[surface.triangles], moving[surface.triangles[:, 0]], pairs, gap)
+        contacts = _Contacts(vertices[surface.triangles], moving[surface.triangles[:, 0]], pairs, gap, deepest)
         parting = contacts.least_translation(allowed)
         if parting is None:
             return None
@@ -83,17 +164,20 @@ def find_parting(
 class _Contacts:
     """Pairs of a moving triangle and another one that touch."""
 
-    def __init__(self, corners: Floats, moving: _Flags, pairs: Indices, gap: float) -> None:
+    def __init__(
+        self, corners: Floats, moving: _Flags, pairs: Indices, gap: float, deepest: float | None = None
+    ) -> None:
         """corners: of all triangles, (F, 3, 3). moving: flags of triangles, (F,). pairs: of triangles, (k, 2)."""
         is_first = moving[pairs[:, :1]]
         ours, others = (np.where(is_first == side, pairs[:, :1], pairs[:, 1:]).ravel() for side in (True, False))
         self._moving, self._others = corners[ours], corners[others]
-        self._tolerance, self._gap = _tolerance(self._moving, self._others), gap
+        self._tolerance = _tolerance(self._moving, self._others) if deepest is None else deepest
+        self._gap = gap
         self._toward_body = corners[moving].mean(axis=(0, 1)) - self._moving.mean(axis=(0, 1))
 
     def least_translation(self, allowed: Floats) -> Floats | None:
         """The least translation found that parts all pairs; None without one. allowed: projection, (3, 3)."""
-        if not are_touching(self._moving, self._others):
+        if not _cut_at_most(self._tolerance, self._moving, self._others):
             return None
         step = -(-len(self._moving) // _SAMPLE)
         a, b = self._moving[::step], self._others[::step]
@@ -192,8 +276,29 @@ def _least_beyond(normals: Floats, heights: Floats) -> Floats | None:
     return best
 
 
+def _cover(first: Floats, second: Floats, depth: float) -> _Flags:
+    """Flags the triangles, (k, 3, 3), that face like that of the same row, and cover a part of it wider than the depth."""
+    normals = [_unit(_normals(each)) for each in (first, second)]
+    covers: _Flags = np.einsum("kj,kj->k", *normals) > _ALIKE
+    axes = _axes(first[covers], second[covers])
+    overlaps = np.minimum(*np.split(_overlaps_along(axes, first[covers], second[covers]), 2, axis=1))
+    is_across = np.abs(np.einsum("kmj,kj->km", axes, normals[0][covers])) > _ALIKE
+    covers[covers] = (np.where(is_across, np.inf, overlaps) > depth).all(axis=1)
+    return covers
+
+
 def _mean_normal(triangles: Floats) -> Floats:
     """The mean unit normal, (3,), of triangles, (k, 3, 3)."""
-    normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
-    mean: Floats = (normals / np.maximum(np.linalg.norm(normals, axis=1), np.finfo(float).tiny)[:, None]).mean(axis=0)
+    mean: Floats = _unit(_normals(triangles)).mean(axis=0)
     return mean
+
+
+def _normals(triangles: Floats) -> Floats:
+    """Normals of triangles, (k, 3, 3), whose length is twice their area, (k, 3)."""
+    return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Vectors, (k, 3), of length 1, or 0."""
+    unit: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)[:, None]
+    return unit

@@ -22,7 +22,7 @@ from stiv.blender.controls.placement_writer import PlacementWriter
 from stiv.blender.edit.cutting_start import start_as_one_steps
 from stiv.blender.edit.edit_notes import EditNotes
 from stiv.blender.edit.increments import Path, split_motion
-from stiv.blender.edit.late_seams import LateSeams, start_steps
+from stiv.blender.edit.late_seams import LateSeams
 from stiv.blender.edit.motion_goal import MotionGoal
 from stiv.blender.edit.results import (
     intersecting_objects,
@@ -32,9 +32,10 @@ from stiv.blender.edit.results import (
 from stiv.blender.edit.sessions import restore_controls, split_controls, write_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices, take_snapshot_steps
 from stiv.blender.edit.solver import EditSolver
+from stiv.blender.edit.standstill import objects_in_contact
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
-from stiv.blender.edit.touching_start import Parting
+from stiv.blender.edit.touching_start import Parting, start_clear_steps
 from stiv.blender.edit.typed_values import apply_increments
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -44,6 +45,8 @@ from stiv.blender.scene.stack_twin import kept_twins
 from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
+
+Start = Callable[[Callable[..., Steps[EditSnapshot]]], Steps[tuple[EditSnapshot, EditSolver, Parting | None]]]
 
 
 class BlenderEdit:
@@ -103,7 +106,7 @@ class BlenderEdit:
         obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
         if not obstacles:
             forget_static_meshes()
-        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles, parts=True)
+        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles, start=start_as_one_steps)
 
     @classmethod
     def begin_with(
@@ -130,9 +133,9 @@ class BlenderEdit:
         participants: Sequence[Participant],
         adapt: Callable[[ControlSet], ControlSet] = lambda control_set: control_set,
         obstacles: Collection[str] = (),
-        parts: bool = False,
+        start: Start = start_clear_steps,
     ) -> Steps[BlenderEdit]:
-        """Steps of `begin_with`. parts: as `begin`, they part objects that only touch others."""
+        """Steps of `begin_with`. start: makes the steps that start a solver, from those that read the scene."""
 
         def read(torn: Sequence[Floats]) -> Steps[EditSnapshot]:
             chosen = [replace(each, torn=tuple(torn)) if each.role == "bones" else each for each in participants]
@@ -140,11 +143,8 @@ class BlenderEdit:
 
         with kept_twins():
             reading = partial(take_snapshot_steps, context, settings, kind, participants, adapt, obstacles)
-            if parts:
-                snapshot, solver, parting = yield from start_as_one_steps(reading)
-                return cls(snapshot, solver, LateSeams(read), parting)
-            snapshot, solver = yield from start_steps(reading())
-        return cls(snapshot, solver, LateSeams(read))
+            snapshot, solver, parting = yield from start(reading)
+        return cls(snapshot, solver, LateSeams(read), parting)
 
     @property
     def start_digest(self) -> str:
@@ -199,6 +199,10 @@ class BlenderEdit:
         if self._unguarded is not None:
             return ""
         return self._notes.standstill_note(result, self.moving, self._start, self._goal)
+
+    def objects_in_contact(self, result: stiv.EditResult) -> list[str]:
+        """Names of the objects in contact in a result, those that do not move if there are any."""
+        return objects_in_contact(result, self.assembly, self.moving)
 
     @property
     def reset_note(self) -> str:

@@ -114,10 +114,8 @@ def take_snapshot_steps(
     excluded, dropped_exclusions = drop_stale(settings.excluded, solid)
     placements = tuple(as_matrix(ob.matrix_world) for ob in context.view_layer.objects)
     chosen = replace(settings, excluded=excluded)
-    deforms = all(each.role != "rigid" or each.placed is not None for each in control_sets if each.rule.moves)
     return EditSnapshot(
-        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame, cutting,
-        may_touch=deforms and cutting is not None,
+        assembly, control_sets, chosen, guard, scene.hidden, dropped_exclusions, placements, carried, frame, cutting
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ from stiv.blender.controls.control_set import ControlSet
 from stiv.blender.controls.transform_locks import location_lock_text
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
+from stiv.blender.scene.elements import PART
 from stiv.blender.scene.message_fitting import first_and_others, fit_message
 
 ROUNDING = 1e-6  # of the way to the goal: what a state that is accepted in contact may differ from the start
@@ -26,20 +27,20 @@ def contact_text(
     ways: from the start to the accepted controls and to the goal, (m, 3) each.
     """
     made, wanted = (float(np.abs(way).max(initial=0.0)) for way in ways)
-    names = _in_contact(result, assembly, moving)
+    names = objects_in_contact(result, assembly, moving)
     if result.status != "corrected" or made > ROUNDING * wanted or not names:
         return ""
     return fit_message("nothing moved: already in contact with {}{}", *first_and_others(names))
 
 
-def _in_contact(result: stiv.EditResult, assembly: Assembly, moving: Collection[str]) -> list[str]:
+def objects_in_contact(result: stiv.EditResult, assembly: Assembly, moving: Collection[str]) -> list[str]:
     """Names of the objects in contact, those that do not move if there are any."""
     surface, vertices = assembly.surface, np.unique(result.events.vertices)
     count = int(np.searchsorted(vertices, surface.vertex_count))  # vertices of obstacles follow those of the surface
     bodies = np.unique(surface.vertex_body[vertices[:count]])
     ends = np.cumsum([each.vertex_count for each in assembly.obstacles])
     obstacles = np.unique(np.searchsorted(ends, vertices[count:] - surface.vertex_count, side="right"))
-    names = {surface.bodies[number].name for number in bodies.tolist()}
+    names = {surface.bodies[number].name.partition(PART)[0] for number in bodies.tolist()}
     names |= {assembly.obstacles[number].owner.name for number in obstacles.tolist()}
     return sorted(names - set(moving)) or sorted(names)
 

@@ -20,6 +20,7 @@ from stiv.blender.controls.directions import ALL_FREE, FreeDirections
 from stiv.blender.controls.editable import is_keyed
 from stiv.blender.controls.placement_goals import PlacementGoal
 from stiv.blender.controls.placement_writer import PlacementWriter
+from stiv.blender.edit.late_seams import start_steps
 from stiv.blender.edit.sessions import ObjectsIntersectError, restore_controls
 from stiv.blender.edit.snapshot import EditSnapshot, find_moving_vertices
 from stiv.blender.edit.solver import EditSolver, start_solver_steps
@@ -57,6 +58,13 @@ class Parting:
         restore_controls(self.control_sets)
 
 
+def start_clear_steps(
+    read: Callable[[], Steps[EditSnapshot]],
+) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
+    """Steps that read the scene and start a solver. They refuse objects that touch others."""
+    return *(yield from start_steps(read())), None
+
+
 def start_apart_steps(
     read: Callable[[], Steps[EditSnapshot]],
 ) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
@@ -65,8 +73,8 @@ def start_apart_steps(
     read: makes steps that read the scene. Raise InputError and StartIntersectsError, with nothing changed.
     """
     snapshot = yield from read()
-    if snapshot.may_touch:
-        return *(yield from _start_touching_steps(snapshot)), None
+    if _deforms_all(snapshot):
+        return *(yield from _start_in_contact_steps(replace(snapshot, may_touch=True))), None
     movers, refusal = _Movers.of(snapshot), None
     try:
         clear = snapshot, (yield from start_solver_steps(snapshot))
@@ -92,12 +100,18 @@ def start_apart_steps(
                 return *clear, None
     assert refusal is not None
     try:
-        return *(yield from _start_touching_steps(replace(snapshot, may_touch=True))), None
+        return *(yield from _start_in_contact_steps(replace(snapshot, may_touch=True))), None
     except ObjectsIntersectError:
         raise refusal from None
 
 
-def _start_touching_steps(snapshot: EditSnapshot) -> Steps[Started]:
+def _deforms_all(snapshot: EditSnapshot) -> bool:
+    """Does the edit deform all that it moves, so that nothing can be parted?"""
+    moving = [each for each in snapshot.control_sets if each.rule.moves]
+    return all(each.role != "rigid" or each.placed is not None for each in moving)
+
+
+def _start_in_contact_steps(snapshot: EditSnapshot) -> Steps[Started]:
     """Steps that start where objects may touch others; if they do, with a minimum distance that they already have.
 
     They keep the automatic one from themselves: a part thinner than rounding would have no side.

@@ -12,7 +12,7 @@ import numpy as np
 from stiv.blender.guard.known_intersections import KnownIntersections
 from stiv.blender.guard.scene_state import SceneState, read_state
 from stiv.blender.scene.arrays import Flags, Indices, read_collection
-from stiv.blender.scene.elements import FacePair
+from stiv.blender.scene.elements import FacePair, FacePairs
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class AcceptedScene:
     def read(context: bpy.types.Context, pairs: Sequence[FacePair] = ()) -> AcceptedScene:
         """The present scene, in which these pairs intersect."""
         objects = frozenset(ob.session_uid for ob in bpy.data.objects)
-        state, known = read_state(context), KnownIntersections(tuple(pairs))
+        state, known = read_state(context), KnownIntersections(FacePairs.of(pairs))
         return AcceptedScene(state, known, objects, _selection(context), _selected_vertices(context))
 
     def with_selection(self, context: bpy.types.Context) -> AcceptedScene:

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Corrects the result of any tool: it is the goal of edits from the last accepted state."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import bpy
 import numpy as np
 
-from stiv import InputError
+from stiv import InputError, StartIntersectsError
 from stiv.blender.controls.control_set import Participant
 from stiv.blender.controls.editable import check_placement
 from stiv.blender.controls.participants import (
@@ -17,10 +18,12 @@ from stiv.blender.controls.participants import (
     merge_participants,
     moves_surface,
 )
-from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.blender_edit import BlenderEdit, Start
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
+from stiv.blender.edit.touching_start import start_apart_steps, start_clear_steps
 from stiv.blender.guard.changes import Change, Changes, compare
+from stiv.blender.guard.known_intersections import KnownIntersections, ObjectPair, find_intersections_steps
 from stiv.blender.guard.scene_state import SceneState, read_state
 from stiv.blender.guard.tool_goals import ToolGoals, controls_after, with_response
 from stiv.blender.scene.arrays import Floats
@@ -29,12 +32,14 @@ from stiv.blender.scene.references import ObjectReference
 from stiv.blender.settings import EditSettings
 from stiv.deadlines import deadline_after, is_over, time_left
 from stiv.task import Left, Steps, run
+from stiv.touching import rounding_of
 
 STEP = 0.02  # maximum step toward a goal, in diagonals of the moving surface
 MAX_STEPS = 100
 WITHOUT_EFFECT = ("CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER")  # on the surfaces of other objects
 TIME_LIMIT = 5.0  # seconds for one correction without a budget; then what is accepted so far is written
 SOLVING = 0.75  # of the time that is left: solves. The rest is for writing, which may solve again
+NEAR = 32  # roundings; an edit keeps a distance of 16 from what it slides along
 SETTLING_TIME = 0.5  # seconds of one call that settles; it is repeated while there is time
 
 
@@ -81,13 +86,15 @@ def correct_after_tool_steps(
     accepted: SceneState,
     changes: Changes,
     end: float | None = None,
+    touching: Collection[ObjectPair] = (),
 ) -> Steps[ToolCorrection]:
     """Steps of `correct_after_tool`.
 
     Between steps, the scene shows the accepted state of the changed objects. Steps that are closed leave the tool's
     result; those ended by Left leave what the scene shows.
 
-    end: the deadline; None for the time budget of the settings from now.
+    end: the deadline; None for the time budget of the settings from now. touching: the objects that only
+    touch in the accepted state; they may touch after the tool as well, but not cut each other.
     """
     end = correction_deadline(settings) if end is None else end
     chosen = [change for change in changes.changes if _participates(context, change, settings)]
@@ -100,8 +107,11 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(context, settings, wanted, names, end)
-        if all(outcome.reached for outcome in outcomes) and _is_tool_result_free(context, wanted, chosen, outcomes):
+        outcomes = yield from _passes(context, settings, wanted, names, end, start_apart_steps if touching else start_clear_steps)
+        is_free = all(outcome.reached for outcome in outcomes) and _is_tool_result_free(
+            context, wanted, chosen, outcomes
+        )
+        if is_free or (touching and (yield from _only_touches(context, settings, wanted, chosen, outcomes, touching))):
             return ToolCorrection(False, names, deformers=deformers, notes=_notes_of(outcomes))
     except Left:
         raise
@@ -121,6 +131,30 @@ def correct_after_tool_steps(
     return ToolCorrection(True, names, tuple(blocking), message, deformers, cut, stopped, _notes_of(outcomes))
 
 
+def correct_but_known_steps(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    known: KnownIntersections,
+    accepted: SceneState,
+    changes: Changes,
+    end: float,
+    copies: Mapping[str, str] | None = None,
+) -> Steps[ToolCorrection]:
+    """Steps of `correct_after_tool` that leave known intersections alone: all of them, where those that only touch do
+    not let an edit start.
+
+    copies: names of objects that were copied, by the name of the copy; they may intersect what their originals do.
+    """
+    correct = partial(correct_after_tool_steps, context, accepted=accepted, changes=changes, end=end)
+    touching = known.touching(copies)
+    try:
+        return (yield from correct(known.left_out(settings, copies, touching=False), touching=touching))
+    except StartIntersectsError:
+        if not touching:
+            raise
+    return (yield from correct(known.left_out(settings, copies)))
+
+
 def correction_deadline(settings: EditSettings) -> float:
     """The deadline of a correction that begins now."""
     return deadline_after(settings.time_budget or TIME_LIMIT)
@@ -133,6 +167,7 @@ class Outcome:
     Attributes:
         edit: the edit.
         reached: does the scene show its goal?
+        near: is it within rounding of it?
         blocking: objects in contact.
         message: why the result could not be written, or notes; may be "".
         cut: as in ToolCorrection.
@@ -141,6 +176,7 @@ class Outcome:
 
     edit: BlenderEdit
     reached: bool
+    near: bool
     blocking: tuple[str, ...]
     message: str
     cut: tuple[str, ...]
@@ -199,8 +235,37 @@ def _is_tool_result_free(
     return False
 
 
+def _only_touches(
+    context: bpy.types.Context,
+    settings: EditSettings,
+    wanted: SceneState,
+    changes: Sequence[Change],
+    outcomes: Sequence[Outcome],
+    touching: Collection[ObjectPair],
+) -> Steps[bool]:
+    """Steps that restore the tool's own result if it is near, and those objects only touch there that did before.
+
+    An edit slides along a surface some roundings above it; the tool's result lies in its plane.
+    """
+    if not all(outcome.near for outcome in outcomes):
+        return False
+    solved, moving = read_state(context), {name for outcome in outcomes for name in outcome.edit.moving}
+    _restore(context, wanted, changes)
+    found = yield from find_intersections_steps(context, settings)
+    allowed = found.touching.intersection(touching)
+    if all(pair in allowed or (pair[0] == pair[1] and pair[0] not in moving) for pair in found.by_objects()):
+        return True
+    _restore(context, solved, changes)
+    return False
+
+
 def _passes(
-    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], end: float
+    context: bpy.types.Context,
+    settings: EditSettings,
+    wanted: SceneState,
+    names: Sequence[str],
+    end: float,
+    start: Start,
 ) -> Steps[list[Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children.
 
@@ -223,7 +288,7 @@ def _passes(
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {_operation(change, done) for change in now}
         goals = ToolGoals.between(present, wanted, now)
-        outcomes.append((yield from _edit(context, settings, goals, kind, end)))
+        outcomes.append((yield from _edit(context, settings, goals, kind, end, start)))
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
@@ -254,13 +319,13 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
 
 
 def _edit(
-    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float
+    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float, start: Start
 ) -> Steps[Outcome]:
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
     edit = yield from BlenderEdit.begin_with_steps(
         context, correction_settings(settings), kind, _participants(context, settings, goals.changes),
-        lambda control_set: with_response(control_set, goals, settings),
+        lambda control_set: with_response(control_set, goals, settings), start=start,
     )  # fmt: skip
     goal = stack_controls([controls_after(each, goals) for each in edit.control_sets])
     return (yield from move_to_goal(edit, goal, end))
@@ -278,7 +343,7 @@ def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
     the scene shows the start of the edit.
     """
     if is_over(end):
-        return Outcome(edit, False, (), "", (), True)
+        return Outcome(edit, False, False, (), "", (), True)
     solving_end = deadline_after(SOLVING * time_left(end))
     steps = _steps_to(edit, goal)
     results = []
@@ -294,11 +359,18 @@ def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
             break
     yield None
     report = yield from edit.write_steps(end)
-    blocking = tuple(name for result in results[-1:] for name in result.blocking)
+    blocking = () if reached else tuple(edit.objects_in_contact(results[-1]))
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
     cut = tuple(sorted(edit.moving)) if any(map(is_cut_by_topology, results[-1:])) else ()
-    is_reached = reached and report.passed and report.result is None
-    return Outcome(edit, is_reached, blocking, message, cut, not reached and is_over(solving_end))
+    is_complete = report.passed and report.result is None
+    near = is_complete and _is_near(edit, goal)
+    return Outcome(edit, reached and is_complete, near, blocking, message, cut, not reached and is_over(solving_end))
+
+
+def _is_near(edit: BlenderEdit, goal: Floats) -> bool:
+    """Is the accepted surface within some roundings of that of the goal?"""
+    surface = edit.surface
+    return bool(np.abs(edit.surface_of(goal) - surface).max(initial=0.0) <= NEAR * rounding_of(surface))
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:

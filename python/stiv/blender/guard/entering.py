@@ -12,7 +12,7 @@ import numpy as np
 from stiv.blender.controls.object_transform import read_transform, write_transform
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Change, Changes, compare
-from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps
+from stiv.blender.guard.correction import ToolCorrection, correct_but_known_steps
 from stiv.blender.guard.extrusion import extruded_from, is_among
 from stiv.blender.guard.free_place import find_free_place
 from stiv.blender.guard.known_intersections import KnownIntersections, find_intersections, fresh_objects
@@ -102,10 +102,10 @@ def correct_copies(
     names = {
         present[copy].reference.name: accepted.state[original].reference.name for copy, original in originals.items()
     }
-    left_out = accepted.known.left_out(settings, names)
     through = tuple((copy, original) for copy in names for original in names.values())
-    left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, *through))
-    return (yield from correct_after_tool_steps(context, left_out, base, compare(base, present), end))
+    settings = replace(settings, ignored_pairs=(*settings.ignored_pairs, *through))
+    changes = compare(base, present)
+    return (yield from correct_but_known_steps(context, settings, accepted.known, base, changes, end, names))
 
 
 def correct_extrusion(
@@ -138,8 +138,8 @@ def correct_extrusion(
         if is_free:
             base = {**read_state(context), reference.session_uid: start}
             change = Change(reference, moved=False, turned=False, scaled=False, points=moved)
-            left_out = accepted.known.left_out(settings)
-            return (yield from correct_after_tool_steps(context, left_out, base, Changes((change,)), end))
+            changes = Changes((change,))
+            return (yield from correct_but_known_steps(context, settings, accepted.known, base, changes, end))
     return None
 
 
@@ -169,7 +169,7 @@ def correct_part(
     if np.ptp(ways, axis=0).max() > ROUNDING * np.abs(after.points).max():  # turned or scaled
         return None
     way = after.world[:3, :3] @ ways.mean(axis=0)
-    left_out = known.left_out(settings)
+    left_out = known.left_out(settings, touching=False)
     left_out = replace(left_out, ignored_pairs=(*left_out.ignored_pairs, (reference.name, reference.name)))
     made = yield from slide_part(context, left_out, {reference.name: part}, way, end)
     if made is None:
@@ -192,7 +192,7 @@ def place_freely(
 
     end: the deadline. False, with nothing changed, without success.
     """
-    translation = yield from find_free_place(context, known.left_out(settings), names, end)
+    translation = yield from find_free_place(context, known.left_out(settings, touching=False), names, end)
     if translation is None or not translation.any():
         return False
     roots = [ob for ob in map(bpy.data.objects.get, names) if ob and (not ob.parent or ob.parent.name not in names)]
@@ -222,7 +222,8 @@ def place_part_freely(
 
     end: the deadline.
     """
-    translation = yield from find_free_place(context, known.left_out(settings), (), end, {reference.name: added})
+    left_out = known.left_out(settings, touching=False)
+    translation = yield from find_free_place(context, left_out, (), end, {reference.name: added})
     if translation is None or not translation.any():
         return False
     before = read_object(reference.find())

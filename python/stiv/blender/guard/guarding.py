@@ -13,7 +13,7 @@ import numpy as np
 from stiv import InputError, StartIntersectsError
 from stiv.blender.guard.accepted_scene import AcceptedScene
 from stiv.blender.guard.changes import Changes, compare
-from stiv.blender.guard.correction import ToolCorrection, correct_after_tool_steps, correction_deadline
+from stiv.blender.guard.correction import ToolCorrection, correct_but_known_steps, correction_deadline
 from stiv.blender.guard.entering import (
     correct_copies,
     correct_extrusion,
@@ -175,10 +175,11 @@ class _Guard:
         return corrected is not None
 
     def _correct_moved(self, start: SceneState) -> Steps[None]:
+        supported = replace(self.changes, unsupported="")
         try:
-            left_out = self.accepted.known.left_out(self.settings)
-            supported = replace(self.changes, unsupported="")
-            outcome = yield from correct_after_tool_steps(self.context, left_out, start, supported, self.end)
+            outcome = yield from correct_but_known_steps(
+                self.context, self.settings, self.accepted.known, start, supported, self.end
+            )
         except (InputError, SceneChangedError) as error:
             self.result.reason = str(error)
             return

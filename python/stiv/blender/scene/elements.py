@@ -53,14 +53,23 @@ class FacePairs(Sequence[FacePair]):
         owner: the owner of both elements of each pair, (k, 2).
         number: the numbers of both elements, (k, 2).
         triangle_pairs: of each pair, (k,).
+        touching: names of each two different objects, ascending, that are known to touch from outside, and not to cut.
     """
 
-    def __init__(self, owners: Sequence[Element], owner: Indices, number: Indices, triangle_pairs: Indices) -> None:
+    def __init__(
+        self,
+        owners: Sequence[Element],
+        owner: Indices,
+        number: Indices,
+        triangle_pairs: Indices,
+        touching: frozenset[tuple[str, str]] = frozenset(),
+    ) -> None:
         """Take pairs that occur once."""
         self.owners = tuple(owners)
         self.owner = owner
         self.number = number
         self.triangle_pairs = triangle_pairs
+        self.touching = touching
 
     @staticmethod
     def of(pairs: Iterable[FacePair]) -> FacePairs:
@@ -130,7 +139,15 @@ class FacePairs(Sequence[FacePair]):
 
     def chosen(self, rows: slice | NDArray[np.integer[Any]] | NDArray[np.bool_]) -> FacePairs:
         """Some of the pairs, by number or flag."""
-        return FacePairs(self.owners, self.owner[rows], self.number[rows], self.triangle_pairs[rows])
+        return FacePairs(self.owners, self.owner[rows], self.number[rows], self.triangle_pairs[rows], self.touching)
+
+    def cutting(self) -> FacePairs:
+        """The pairs without those of objects that only touch."""
+
+        def cut(first: Element, second: Element) -> bool:
+            return tuple(sorted((first.object, second.object))) not in self.touching
+
+        return self.chosen(self.where(cut)) if self.touching else self
 
     def where(self, holds: Callable[[Element, Element], bool]) -> NDArray[np.bool_]:
         """Flags the pairs, (k,), whose owners have a property."""

@@ -113,15 +113,25 @@ def find_pairs(assembly: Assembly, threads: int = 0, most: int = 0) -> FacePairs
 
     most: number of triangle pairs to name for each two meshes; 0: all.
     """
-    triangles = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
-    triangles = triangles[~_edge_contacts(assembly, triangles)]
+    return name_pairs(assembly, find_triangle_pairs(assembly, threads), threads, most)
+
+
+def find_triangle_pairs(assembly: Assembly, threads: int = 0) -> Indices:
+    """All intersecting pairs of triangles, (k, 2), without seams."""
+    found = stiv.find_intersections(assembly.positions, assembly.surface, threads=threads)
+    chosen: Indices = found[~_edge_contacts(assembly, found)]
+    return chosen
+
+
+def name_pairs(assembly: Assembly, triangles: Indices, threads: int = 0, most: int = 0) -> FacePairs:
+    """The pairs of elements of those of triangles, (k, 2), and of loose edges and vertices. most: see `find_pairs`."""
     chosen = _first_of_each(assembly, triangles, most) if most else triangles
     return find_face_pairs(assembly, assembly.positions, threads, chosen)
 
 
 def _first_of_each(assembly: Assembly, pairs: Indices, most: int) -> Indices:
     """The first pairs of triangles, (k, 2), of each two meshes."""
-    mesh = _meshes_of(assembly, pairs)
+    mesh = meshes_of(assembly, pairs)
     keys = mesh[:, 0] * len(assembly.meshes) + mesh[:, 1]
     order = np.argsort(keys, kind="stable")
     rank = np.arange(len(order)) - np.searchsorted(keys[order], keys[order])
@@ -160,7 +170,7 @@ def _edge_contacts(assembly: Assembly, intersecting_triangles: Indices) -> NDArr
 
 def _own_triangles(assembly: Assembly, pairs: Indices) -> dict[int, tuple[Indices, Indices]]:
     """For each mesh with pairs inside it: their rows, and the pairs with triangle numbers of the mesh."""
-    mesh = _meshes_of(assembly, pairs)
+    mesh = meshes_of(assembly, pairs)
     rows = np.flatnonzero(mesh[:, 0] == mesh[:, 1]).astype(np.int32)
     rows = rows[np.argsort(mesh[rows, 0], kind="stable")]
     numbers, firsts = np.unique(mesh[rows, 0], return_index=True)
@@ -169,7 +179,7 @@ def _own_triangles(assembly: Assembly, pairs: Indices) -> dict[int, tuple[Indice
     return {number: (group, pairs[group] - starts[number]) for number, group in groups}
 
 
-def _meshes_of(assembly: Assembly, pairs: Indices) -> NDArray[np.int64]:
+def meshes_of(assembly: Assembly, pairs: Indices) -> NDArray[np.int64]:
     """The number of the mesh of each triangle in pairs, (k, 2)."""
     return np.repeat(np.arange(len(assembly.meshes)), [len(each.triangles) for each in assembly.meshes])[pairs]
 
