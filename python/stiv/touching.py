@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The least translation that parts bodies from others which they only touch, of the size of rounding."""
+"""Surfaces that only touch: whether they do, and the least translation that parts them, of the size of rounding."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from stiv.surface import Body, Surface
 _Flags = NDArray[np.bool_]
 
 DEEPEST = 16  # of triangles that only touch, in roundings of their corners
+DEEPEST_LEFT = 64  # that an edit leaves: 16 roundings of its coordinates, which may have been larger than they are now
 
 _FIRST = 256  # pairs that are tested before all others; where surfaces cut each other, one of these mostly does
 _SAMPLE = 4096  # pairs whose axes are compared
@@ -33,15 +34,14 @@ def rounding_of(points: Floats) -> float:
     return float(np.spacing(np.float32(np.abs(points).max(initial=0.0))))
 
 
-def are_touching(first: Floats, second: Floats) -> bool:
-    """Return whether triangles, (k, 3, 3) each, cut no deeper than rounding into those of the same row."""
-    return _cut_at_most(_tolerance(first, second), first, second)
+def are_touching(first: Floats, second: Floats, depth: float | None = None) -> bool:
+    """Return whether triangles, (k, 3, 3) each, cut no deeper into those of the same row.
 
-
-def _cut_at_most(depth: float, first: Floats, second: Floats) -> bool:
-    end = len(first)
+    depth  that counts as touching; None: that of rounding
+    """
+    deepest, end = _tolerance(first, second) if depth is None else depth, len(first)
     parts = ((0, min(_FIRST, end)), (_FIRST, end))
-    return all(_depths(first[begin:stop], second[begin:stop]).max(initial=0.0) <= depth for begin, stop in parts)
+    return all(_depths(first[begin:stop], second[begin:stop]).max(initial=0.0) <= deepest for begin, stop in parts)
 
 
 def _depths(first: Floats, second: Floats) -> Floats:
@@ -51,34 +51,46 @@ def _depths(first: Floats, second: Floats) -> Floats:
     return intersection_depths(points, triangles, np.arange(len(triangles), dtype=np.int32).reshape(2, -1).T)
 
 
-def touching_from_outside(first: Floats, second: Floats, group: Indices, depth: float) -> _Flags:
+def touching_from_outside(first: Floats, second: Floats, group: Indices) -> _Flags:
     """Return which groups of rows, (g,), are contacts of two surfaces beside each other.
 
     first, second  triangles, (k, 3, 3) each, that intersect those of the same row
-    group          (k,) numbers from 0 of two surfaces that meet in these rows
-    depth          the deepest that counts as touching
+    group          (k,) numbers from 0, each once at least, of two surfaces that meet in these rows
 
-    No triangle of these groups cuts deeper, none covers a part of one in its plane that faces the same way, and some
-    translation of the size of the depth parts the two surfaces there. So they do not cross each other along edges.
+    No triangle of these groups cuts deeper than rounding, and none covers a part of one in its plane that faces the
+    same way. A plane separates the surfaces there, or a translation or shrinking of the size of rounding parts them. So
+    they do not cross each other along edges.
     """
-    count = int(group.max(initial=-1)) + 1
-    is_deep = (_depths(first, second) > depth) | _cover(first, second, depth)
-    touching: _Flags = np.bincount(group[is_deep], minlength=count) == 0
-    for number in np.flatnonzero(touching & ~_lie_on_each_other(first, second, group, count, depth)).tolist():
+    depths = _touching_depths(first, second, group)
+    is_deep = (_depths(first, second) > depths[group]) | _cover(first, second, depths[group])
+    touching: _Flags = np.bincount(group[is_deep], minlength=len(depths)) == 0
+    for number in np.flatnonzero(touching & ~_lie_on_each_other(first, second, group, depths)).tolist():
         own = group == number
-        sides = [np.unique(each[own].reshape(-1, 9), axis=0).reshape(-1, 3, 3) for each in (first, second)]
-        touching[number] = _are_beside(*sides, depth) or _can_part(*sides, depth)
+        a, b = (np.unique(each[own].reshape(-1, 9), axis=0).reshape(-1, 3, 3) for each in (first, second))
+        touching[number] = _are_beside(a, b, depths[number]) or _can_part(a, b, depths[number])
     return touching
 
 
-def _lie_on_each_other(first: Floats, second: Floats, group: Indices, count: int, depth: float) -> _Flags:
-    """Flags the groups, (count,), in which the plane of two triangles that face each other separates all, but for the
-    depth. Faster than `_are_beside` for one after the other.
+def _touching_depths(first: Floats, second: Floats, group: Indices) -> Floats:
+    """The depth of touching surfaces, for each group: that of rounding, or the one that edits leave."""
+    sizes = np.zeros((2, int(group.max(initial=-1)) + 1), np.float32)
+    for side, each in enumerate((first, second)):
+        np.maximum.at(sizes[side], group, np.abs(each).max(axis=(1, 2)).astype(np.float32))
+    roundings = np.spacing(sizes).astype(np.float64)
+    depths: Floats = np.maximum(DEEPEST * roundings.max(axis=0), DEEPEST_LEFT * roundings.min(axis=0))
+    return depths
+
+
+def _lie_on_each_other(first: Floats, second: Floats, group: Indices, depths: Floats) -> _Flags:
+    """Flags the groups in which the plane of two triangles that face each other separates all, but for the depth.
+
+    Faster than `_are_beside` for one after the other. depths: of each group.
     """
     normals = [_normals(each) for each in (first, second)]
     areas = np.linalg.norm(normals, axis=2).min(axis=0)
     facing = np.flatnonzero(np.einsum("kj,kj->k", *map(_unit, normals)) < -_ALIKE)
     facing = facing[np.argsort(areas[facing], kind="stable")]
+    count = len(depths)
     best = np.full(count, -1)
     best[group[facing]] = facing  # the last of equal groups remains: the largest
     axes = np.where((best >= 0)[:, None], _unit(normals[0])[best], 0.0)[group]
@@ -88,7 +100,7 @@ def _lie_on_each_other(first: Floats, second: Floats, group: Indices, count: int
         np.minimum.at(low[side], group, each.min(axis=1))
         np.maximum.at(high[side], group, each.max(axis=1))
     overlaps = np.minimum(high[0] - low[1], high[1] - low[0])
-    separated: _Flags = (best >= 0) & (overlaps <= depth)
+    separated: _Flags = (best >= 0) & (overlaps <= depths)
     return separated
 
 
@@ -113,7 +125,7 @@ def _can_part(first: Floats, second: Floats, depth: float) -> bool:
     moves = np.arange(len(corners)) < 3 * len(first)
     bodies = [Body("second", "fixed"), Body("first", "rigid")]
     surface = Surface(triangles, len(corners), vertex_body=moves.astype(np.int32), bodies=bodies)
-    if find_parting(surface, corners, moves, depth, deepest=depth) is not None:
+    if find_parting(surface, corners, moves, depth, depth=depth) is not None:
         return True
     middle, extent = first.min(axis=(0, 1)) / 2 + first.max(axis=(0, 1)) / 2, np.ptp(first, axis=(0, 1)).min()
     if extent < _SHRUNK * depth:
@@ -129,8 +141,8 @@ def find_parting(
     gap: float,
     free: ArrayLike | None = None,
     near: Sequence[tuple[int, int]] = (),
+    depth: float = 0.0,
     threads: int = 0,
-    deepest: float | None = None,
 ) -> Floats | None:
     """Return the least translation found, (3,), of the moving vertices after which no triangles intersect.
 
@@ -140,7 +152,7 @@ def find_parting(
     gap        distance by which those that touch are parted
     free       (3, 3) projection to the directions that the translation may have; None: all
     near       pairs of triangles, (k, 2), that do not touch but are nearer than the gap, and are parted too
-    deepest    depth that still counts as touching; None: that of rounding
+    depth      that counts as touching, where that of rounding is not larger
 
     The result is exact in that nothing intersects there. Returns None if something cuts deeper than rounding, or
     no translation of that size parts everything.
@@ -153,7 +165,7 @@ def find_parting(
         if len(found) == 0 and (number > 0 or len(pairs) == 0):
             return shift
         pairs = np.concatenate([pairs, found])
-        contacts = _Contacts(vertices[surface.triangles], moving[surface.triangles[:, 0]], pairs, gap, deepest)
+        contacts = _Contacts(vertices[surface.triangles], moving[surface.triangles[:, 0]], pairs, gap, depth)
         parting = contacts.least_translation(allowed)
         if parting is None:
             return None
@@ -164,20 +176,18 @@ def find_parting(
 class _Contacts:
     """Pairs of a moving triangle and another one that touch."""
 
-    def __init__(
-        self, corners: Floats, moving: _Flags, pairs: Indices, gap: float, deepest: float | None = None
-    ) -> None:
+    def __init__(self, corners: Floats, moving: _Flags, pairs: Indices, gap: float, depth: float) -> None:
         """corners: of all triangles, (F, 3, 3). moving: flags of triangles, (F,). pairs: of triangles, (k, 2)."""
         is_first = moving[pairs[:, :1]]
         ours, others = (np.where(is_first == side, pairs[:, :1], pairs[:, 1:]).ravel() for side in (True, False))
         self._moving, self._others = corners[ours], corners[others]
-        self._tolerance = _tolerance(self._moving, self._others) if deepest is None else deepest
+        self._tolerance = max(depth, _tolerance(self._moving, self._others))
         self._gap = gap
         self._toward_body = corners[moving].mean(axis=(0, 1)) - self._moving.mean(axis=(0, 1))
 
     def least_translation(self, allowed: Floats) -> Floats | None:
         """The least translation found that parts all pairs; None without one. allowed: projection, (3, 3)."""
-        if not _cut_at_most(self._tolerance, self._moving, self._others):
+        if not are_touching(self._moving, self._others, self._tolerance):
             return None
         step = -(-len(self._moving) // _SAMPLE)
         a, b = self._moving[::step], self._others[::step]
@@ -276,14 +286,14 @@ def _least_beyond(normals: Floats, heights: Floats) -> Floats | None:
     return best
 
 
-def _cover(first: Floats, second: Floats, depth: float) -> _Flags:
-    """Flags the triangles, (k, 3, 3), that face like that of the same row, and cover a part of it wider than the depth."""
+def _cover(first: Floats, second: Floats, depths: Floats) -> _Flags:
+    """Flags the triangles, (k, 3, 3), that face like that of the same row, and cover a part wider than the depth."""
     normals = [_unit(_normals(each)) for each in (first, second)]
     covers: _Flags = np.einsum("kj,kj->k", *normals) > _ALIKE
     axes = _axes(first[covers], second[covers])
     overlaps = np.minimum(*np.split(_overlaps_along(axes, first[covers], second[covers]), 2, axis=1))
     is_across = np.abs(np.einsum("kmj,kj->km", axes, normals[0][covers])) > _ALIKE
-    covers[covers] = (np.where(is_across, np.inf, overlaps) > depth).all(axis=1)
+    covers[covers] = (np.where(is_across, np.inf, overlaps) > depths[covers, None]).all(axis=1)
     return covers
 
 

@@ -41,7 +41,8 @@ bool has_deviation_tests(const EditContext& context) {
 /// @param rows of the scene
 ExcludedPairs excluded_pairs(const EditContext& context, const Controls& start, SceneRows& rows, Execution& execution) {
   const EditOptions& options = context.options();
-  ExcludedPairs::Given given{options.excluded, options.parts_may_cut, options.touching, {}};
+  ExcludedPairs::Given given{options.excluded, options.parts_may_cut, options.touching, {}, {}};
+  given.separation = [&](Index a, Index b) { return context.proximity().between(a, b).separation; };
   for (const auto& [a, b] : options.overlapping) given.overlapping.push_back(std::minmax(a, b));
   sort_unique(given.overlapping);
   if (options.excluded.empty() && options.touching.empty())

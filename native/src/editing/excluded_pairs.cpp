@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
 #include "acceptance/clearance/triangle_distance.hpp"
 #include "acceptance/intersection/near_pairs.hpp"
+#include "editing/contact_planes.hpp"
 #include "editing/touching_pairs.hpp"
 #include "stiv/detection/distance.hpp"
 #include "stiv/error.hpp"
@@ -88,27 +90,71 @@ bool move_together(const std::array<Index, 3>& first, const std::array<Index, 3>
   return std::none_of(first.begin(), first.end(), deviates) && std::none_of(second.begin(), second.end(), deviates);
 }
 
+/// Of the contacts in which the same vertex moves toward equal planes, the deepest one: where a vertex meets several
+/// triangles of a flat face, the others add nothing.
+Events deepest_of_each(const Events& contacts, const Positions& from, const Positions& to) {
+  constexpr double same_direction = 0.9999;  // least cosine
+  const auto motion = [&](const Event& contact, int k) {
+    const Index vertex = contact.vertices[k];
+    return std::abs(contact.normal.dot(Vector3(to.row(vertex) - from.row(vertex))));
+  };
+  const auto depth = [&](const Event& contact) { return -contact.normal.dot(weighted_sum(contact, to)); };
+  std::map<Index, std::vector<std::size_t>> found;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Event& contact = contacts[k];
+    std::vector<std::size_t>& own = found[contact.vertices[motion(contact, 0) < motion(contact, 1) ? 1 : 0]];
+    const auto equal = std::find_if(own.begin(), own.end(), [&](std::size_t other) {
+      return std::abs(contacts[other].normal.dot(contact.normal)) > same_direction;
+    });
+    if (equal == own.end())
+      own.push_back(k);
+    else if (depth(contact) > depth(contacts[*equal]))
+      *equal = k;
+  }
+  std::vector<std::size_t> kept;
+  for (const auto& [vertex, own] : found) kept.insert(kept.end(), own.begin(), own.end());
+  std::sort(kept.begin(), kept.end());
+  Events deepest;
+  for (const std::size_t k : kept) deepest.push_back(contacts[k]);
+  return deepest;
+}
+
 }  // namespace
 
 ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Given& given, const PositionsView& start,
                              double least, Execution& execution)
-    : surface_(std::move(surface)), least_(least) {
+    : surface_(std::move(surface)), least_(least), rounding_(4 * least) {
   const IndexPairs pairs = checked(given.pairs, static_cast<Index>(surface_->triangles().rows()));
   bodies_ = bodies_of(pairs);
   divide_given(pairs, start);
   pairs_ = pairs;
   const IndexPairs contacts = contacts_of(given, start, execution);
+  rounding_ = rounding_of(contacts, start);
   if (!contacts.empty() || (!given.parts_may_cut && !shallow_.empty())) {
     const SurfaceParts parts(*surface_);
     if (!given.parts_may_cut) take_flush(parts, start);
     take_contacts(contacts, parts, start);
-    facing_ = FacingParts(*surface_, parts, flush_, start, rounding());
-    for (const auto& [a, b] : flush_) flush_parts_.emplace_back(parts.of(a), parts.of(b));
+    if (!flush_.empty()) {
+      list_triangles_around_vertices();
+      take_contact_planes(given, parts, start);
+    }
   }
   if (pairs_.empty() && flush_.empty()) return;
-  list_triangles_around_vertices();
+  if (around_.empty()) list_triangles_around_vertices();
   add_touching(start);
   find_others_that_touch(start, execution);
+}
+
+/// The rounding of the contacts at the start: up to four times that of the coordinates, which may have been larger in
+/// an edit before.
+double ExcludedPairs::rounding_of(const IndexPairs& contacts, const PositionsView& start) const {
+  const PlacedTriangles placed{surface_->triangles(), start};
+  double deepest = 0, found = rounding_;
+  for (const auto& [a, b] : contacts)
+    if (const double depth = intersection_depth(placed.corners(a), placed.corners(b), start); depth < 4 * rounding_)
+      deepest = std::max(deepest, depth);
+  while (found <= deepest) found *= 2;
+  return found;
 }
 
 void ExcludedPairs::list_triangles_around_vertices() {
@@ -164,6 +210,25 @@ void ExcludedPairs::take_contacts(const IndexPairs& contacts, const SurfaceParts
   std::copy_if(contacts.begin(), contacts.end(), std::back_inserter(flush_),
                [&](const auto& pair) { return !std::binary_search(cutting.begin(), cutting.end(), parts.of(pair)); });
   std::sort(flush_.begin(), flush_.end());
+}
+
+/// Takes the pairs in the planes of contacts, too, where bodies keep no distance: an edge or a corner that lies in such
+/// a plane would otherwise stop at faces that it reaches later.
+void ExcludedPairs::take_contact_planes(const Given& given, const SurfaceParts& parts, const PositionsView& start) {
+  IndexPairs sliding;
+  std::copy_if(flush_.begin(), flush_.end(), std::back_inserter(sliding), [&](const auto& pair) {
+    const auto body = [&](Index triangle) { return surface_->body_of(surface_->triangles()(triangle, 0)); };
+    return given.separation && given.separation(body(pair.first), body(pair.second)) <= rounding();
+  });
+  PairsInContactPlanes found = find_in_contact_planes(*surface_, parts, sliding, around_, start, rounding());
+  const auto is_excluded = [&](const auto& pair) { return is_among(pairs_, pair.first, pair.second); };
+  std::erase_if(found.facing, is_excluded);
+  std::erase_if(found.beside, is_excluded);
+  facing_ = FacingParts(*surface_, parts, flush_, found.facing, start, rounding());
+  flush_.insert(flush_.end(), found.facing.begin(), found.facing.end());
+  flush_.insert(flush_.end(), found.beside.begin(), found.beside.end());
+  sort_unique(flush_);
+  for (const auto& [a, b] : flush_) flush_parts_.emplace_back(parts.of(a), parts.of(b));
 }
 
 /// The pairs in one plane with the insides of both parts on the same side of it: these lie in each other, such as a
@@ -307,17 +372,21 @@ void ExcludedPairs::remove_from(Events& events, const PositionsView& start, cons
 
 void ExcludedPairs::add_contacts(Events& events, const Positions& from, const Positions& to) const {
   const PlacedTriangles before{surface_->triangles(), from}, after{surface_->triangles(), to};
-  const auto partings = facing_.add_contacts(events, from, to, rounding() / 2, least_);
+  Events contacts;
+  const auto partings = facing_.add_contacts(contacts, from, to, rounding() / 2, least_);
   for (std::size_t k = 0; k < flush_.size(); ++k) {
     const std::array<Index, 3> a = before.corners(flush_[k].first), b = before.corners(flush_[k].second);
+    if (!after.box(flush_[k].first).intersects(after.box(flush_[k].second))) continue;
     if (move_together(a, b, from, to, rounding() / 4)) continue;
     if (!stiv::intersect_deeper(a, b, to, rounding() / 2)) continue;  // a margin to the depth that is not accepted
     const std::optional<Vector3> common = common_parting(partings, flush_parts_[k], a, b, from);
     const Vector3 normal = common ? *common : parting_direction(a, b, from, to, 2 * rounding());
     Event contact = contact_along(normal, a, b, to);
     contact.clearance.margin = least_;
-    if (normal.dot(weighted_sum(contact, to) - weighted_sum(contact, from)) < 0) events.push_back(contact);
+    if (normal.dot(weighted_sum(contact, to) - weighted_sum(contact, from)) < 0) contacts.push_back(contact);
   }
+  const Events deepest = deepest_of_each(contacts, from, to);
+  events.insert(events.end(), deepest.begin(), deepest.end());
 }
 
 /// The direction in which faces of the same two parts are stopped, if it parts two triangles, too: any other one would

@@ -35,6 +35,7 @@ class ExcludedPairs {
     bool parts_may_cut = false;   ///< no parts of a body count as only touching
     std::vector<Index> touching;  ///< bodies that may touch each other
     IndexPairs overlapping;       ///< pairs of bodies, smaller number first, sorted, that may not count as touching
+    std::function<double(Index, Index)> separation;  ///< the minimum distance of two bodies
   };
 
   /// Two triangles touch if they are apart at the start, but nearer than `least`, the least separation that survives
@@ -80,11 +81,13 @@ class ExcludedPairs {
 
  private:
   /// Distances below it are rounding: away from the start, coordinates may be larger and round more.
-  double rounding() const { return 4 * least_; }
+  double rounding() const { return rounding_; }
+  double rounding_of(const IndexPairs& contacts, const PositionsView& start) const;
   void divide_given(const IndexPairs& pairs, const PositionsView& start);
   IndexPairs contacts_of(const Given& given, const PositionsView& start, Execution& execution) const;
   void take_flush(const SurfaceParts& parts, const PositionsView& start);
   void take_contacts(const IndexPairs& contacts, const SurfaceParts& parts, const PositionsView& start);
+  void take_contact_planes(const Given& given, const SurfaceParts& parts, const PositionsView& start);
   void list_triangles_around_vertices();
   std::optional<Vector3> common_parting(const std::vector<FacingParts::Parting>& partings,
                                         const std::pair<Index, Index>& parts, const std::array<Index, 3>& first,
@@ -102,11 +105,11 @@ class ExcludedPairs {
   std::vector<Index> triangles_with(const Index* begin, const Index* end) const;
 
   std::shared_ptr<const Surface> surface_;
-  double least_;
+  double least_, rounding_;
   IndexPairs bodies_;                       // of the given pairs, smaller index first, sorted
   IndexPairs pairs_;                        // without limits
   IndexPairs deep_, shallow_;               // those that intersect at the start, shallow: no deeper than rounding
-  IndexPairs flush_;                        // pairs of parts that only touch: given ones, and those of two bodies
+  IndexPairs flush_;                        // pairs of parts that only touch, and others in the planes of contact
   IndexPairs shallow_only_;                 // these, and others that touch: never deeper than rounding
   IndexPairs all_;                          // all of these
   FacingParts facing_;                      // of the flush pairs

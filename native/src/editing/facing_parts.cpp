@@ -82,12 +82,13 @@ Event contact_along(const Vector3& normal, std::array<Index, 3> first, std::arra
 }
 
 FacingParts::FacingParts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
-                         const PositionsView& start, double rounding)
+                         const IndexPairs& apart, const PositionsView& start, double rounding)
     : triangles_(surface.triangles()), rounding_(rounding) {
   find_parts(surface, parts, flush, start);
-  for (const auto& [a, b] : flush)
-    for (const auto& [face, base] : {std::pair(a, b), std::pair(b, a)})
-      if (const auto facing = facing_of(face, base, parts, start)) facing_.push_back(*facing);
+  for (const auto& [pairs, touch] : {std::pair(&flush, true), std::pair(&apart, false)})
+    for (const auto& [a, b] : *pairs)
+      for (const auto& [face, base] : {std::pair(a, b), std::pair(b, a)})
+        if (const auto facing = facing_of(face, base, parts, start, touch)) facing_.push_back(*facing);
 }
 
 void FacingParts::find_parts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
@@ -108,16 +109,18 @@ void FacingParts::find_parts(const Surface& surface, const SurfaceParts& parts, 
   }
 }
 
-/// Whether a face lies on a base at the start.
+/// Whether a face lies on a base at the start, or only in its plane if they do not touch.
 std::optional<FacingParts::Facing> FacingParts::facing_of(Index face, Index base, const SurfaceParts& parts,
-                                                          const PositionsView& start) const {
+                                                          const PositionsView& start, bool touch) const {
   if (!parts.is_closed(base)) return std::nullopt;
   const Corners on_face = corners_of(triangles_, face, start), on_base = corners_of(triangles_, base, start);
   const Vector3 normal = normal_of(on_base);
   const double cosine = normal.dot(normal_of(on_face));
   if (std::abs(cosine) < least_cosine) return std::nullopt;
-  const auto middle = centroid_of(over(on_face, on_base, normal), rounding_);
-  if (!middle || std::abs(normal.dot(*middle - on_base[0])) > 2 * rounding_) return std::nullopt;
+  if (touch) {
+    const auto middle = centroid_of(over(on_face, on_base, normal), rounding_);
+    if (!middle || std::abs(normal.dot(*middle - on_base[0])) > 2 * rounding_) return std::nullopt;
+  }
   const std::pair<Index, Index> both(parts.of(face), parts.of(base));
   const Part &own = parts_.at(both.first), &other = parts_.at(both.second);
   const Vector3 margin = Vector3::Constant(2 * rounding_);

@@ -29,9 +29,10 @@ class FacingParts {
   FacingParts() = default;
 
   /// @param flush pairs of triangles of parts that only touch
+  /// @param apart pairs of triangles of the same parts, in one plane, that do not touch
   /// @param rounding distances below it are rounding
-  FacingParts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush, const PositionsView& start,
-              double rounding);
+  FacingParts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush, const IndexPairs& apart,
+              const PositionsView& start, double rounding);
 
   /// The first pair, smaller index first, of which one triangle has passed the other by more than `depth`.
   std::optional<std::pair<Index, Index>> find_passed(const PositionsView& q, double depth) const;
@@ -63,7 +64,8 @@ class FacingParts {
 
   void find_parts(const Surface& surface, const SurfaceParts& parts, const IndexPairs& flush,
                   const PositionsView& start);
-  std::optional<Facing> facing_of(Index face, Index base, const SurfaceParts& parts, const PositionsView& start) const;
+  std::optional<Facing> facing_of(Index face, Index base, const SurfaceParts& parts, const PositionsView& start,
+                                  bool touch) const;
   Vector3 free_side(const Facing& facing, const PositionsView& q) const;
   std::optional<Vector3> point_below(const Facing& facing, const PositionsView& q, double depth) const;
   bool has_passed(const Facing& facing, const PositionsView& q, Vector3 point) const;

@@ -237,7 +237,9 @@ def test_a_shared_mesh_is_edited_once_for_a_parent_and_its_child(monkeypatch: py
     bpy.context.view_layer.update()
     started = []
     begin = BlenderEdit.begin_with_steps
-    monkeypatch.setattr(BlenderEdit, "begin_with_steps", lambda *given, **options: started.append(given) or begin(*given, **options))
+    monkeypatch.setattr(
+        BlenderEdit, "begin_with_steps", lambda *given, **options: started.append(given) or begin(*given, **options)
+    )
 
     def pull() -> None:
         for vertex in box.data.vertices:

@@ -106,7 +106,9 @@ class BlenderEdit:
         obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
         if not obstacles:
             forget_static_meshes()
-        return cls.begin_with_steps(context, settings, kind, participants, obstacles=obstacles, start=start_as_one_steps)
+        return cls.begin_with_steps(
+            context, settings, kind, participants, obstacles=obstacles, start=start_as_one_steps
+        )
 
     @classmethod
     def begin_with(

@@ -30,9 +30,12 @@ from stiv.blender.scene.evaluated_scene import VisibleMesh
 from stiv.blender.scene.exclusions import pairs_of_objects
 from stiv.blender.scene.references import SceneChangedError
 from stiv.task import Steps
-from stiv.touching import are_touching, find_parting, rounding_of
+from stiv.touching import DEEPEST, DEEPEST_LEFT, are_touching, find_parting, rounding_of
 
 GAP = 8  # between parted objects, in roundings of the moving objects
+DEEPER = (
+    8  # gaps to which objects that only touch may cut: an edit leaves two, of coordinates that may have been larger
+)
 SURPLUS = 1 + 2.0**-20  # of coordinates: a session computes them again, which may round to a larger power of two
 NEAR = 4  # gaps within which objects are in contact
 KEPT = 0.5  # of the gap: the minimum distance where objects are in contact, the least that single precision can keep
@@ -79,7 +82,7 @@ def start_apart_steps(
     try:
         clear = snapshot, (yield from start_solver_steps(snapshot))
     except ObjectsIntersectError as error:
-        if movers is None or not _only_touch(error, movers.names):
+        if movers is None or not _only_touch(error, movers.names, movers.deepest):
             raise
         parting, refusal = (yield from _part_steps(error.assembly, movers)), error
     else:
@@ -163,7 +166,7 @@ def _part(surfaces: Assembly, is_moving: Flags, movers: _Movers, pairs: Sequence
     of triangles that are nearer than the gap.
     """
     free = _free_directions(movers.sets).along(np.eye(3))
-    shift = find_parting(surfaces.surface, surfaces.positions, is_moving, movers.gap, free, pairs)
+    shift = find_parting(surfaces.surface, surfaces.positions, is_moving, movers.gap, free, pairs, movers.deepest)
     if shift is None or movers.are_keyed:
         return None
     for each in movers.sets:
@@ -229,6 +232,11 @@ class _Movers:
         return cls(sets, meshes, names, gap, (*settings.ignored_pairs, *passing), are_alone)
 
     @property
+    def deepest(self) -> float:
+        """The depth that still counts as touching, where the rounding of others is not larger."""
+        return DEEPEST_LEFT / GAP * self.gap
+
+    @property
     def are_keyed(self) -> bool:
         """Would the next frame reset any of them?"""
         return any(is_keyed(each.find()) for control_set in self.sets for each in _writer(control_set).references)
@@ -281,15 +289,16 @@ def _writer(control_set: ControlSet) -> PlacementWriter:
     return control_set.writer
 
 
-def _only_touch(error: ObjectsIntersectError, moving: frozenset[str]) -> bool:
-    """Is each pair one of a moving and a resting object that only touch?"""
+def _only_touch(error: ObjectsIntersectError, moving: frozenset[str], depth: float) -> bool:
+    """Is each pair one of a moving and a resting object that only touch? depth: at least that of rounding there."""
     assembly, count = error.assembly, len(error.assembly.surface.triangles)
     is_moving = np.zeros(len(assembly.positions), np.bool_)
     is_moving[assembly.vertices_of([k for k, mesh in enumerate(assembly.meshes) if mesh.owner.name in moving])] = True
     moves = np.append(is_moving[assembly.surface.triangles[:, 0]], False)[np.minimum(error.pairs, count)]
     if len(moves) == 0 or (moves[:, 0] == moves[:, 1]).any():
         return False
-    return are_touching(*(_corners(assembly, error.pairs[:, side]) for side in (0, 1)))
+    first, second = (_corners(assembly, error.pairs[:, side]) for side in (0, 1))
+    return are_touching(first, second, max(depth, DEEPEST * rounding_of(np.concatenate([first, second]))))
 
 
 def _corners(assembly: Assembly, triangles: Indices) -> Floats:

@@ -107,7 +107,9 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(context, settings, wanted, names, end, start_apart_steps if touching else start_clear_steps)
+        outcomes = yield from _passes(
+            context, settings, wanted, names, end, start_apart_steps if touching else start_clear_steps
+        )
         is_free = all(outcome.reached for outcome in outcomes) and _is_tool_result_free(
             context, wanted, chosen, outcomes
         )

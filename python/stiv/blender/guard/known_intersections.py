@@ -18,10 +18,9 @@ from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import find_triangle_pairs, meshes_of, name_pairs, tested_names
 from stiv.task import Steps, Turns, run
-from stiv.touching import DEEPEST, rounding_of, touching_from_outside
+from stiv.touching import touching_from_outside
 
 MOST = 1000  # pairs of triangles; a copy of a large mesh in the place of its original has millions
-DEEPEST_TOUCHING = 2 * DEEPEST  # roundings; an edit leaves up to half, and its coordinates may then round to the half
 MOST_TOUCHING = 20_000  # pairs of triangles of two objects that may touch; those with more count as cutting each other
 
 ObjectPair = tuple[str, str]
@@ -56,15 +55,14 @@ def _touching_objects(assembly: Assembly, triangles: Indices) -> frozenset[Objec
     """The names of each two objects whose triangles in pairs, (k, 2), touch from outside, and do not cut."""
     names, numbers = np.unique([mesh.owner.name for mesh in assembly.meshes], return_inverse=True)
     owners = numbers.reshape(-1)[meshes_of(assembly, triangles)]
-    order = np.argsort(owners, axis=1, kind="stable")
-    owners, triangles = (np.take_along_axis(each, order, axis=1) for each in (owners, triangles))
-    both, group, counts = np.unique(owners, axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(owners, axis=1, kind="stable")  # of each pair, the first triangle belongs to the first name
+    ordered = np.take_along_axis(triangles, order, axis=1)
+    both, group, counts = np.unique(np.sort(owners, axis=1), axis=0, return_inverse=True, return_counts=True)
     may_touch = np.flatnonzero((both[:, 0] != both[:, 1]) & (counts <= MOST_TOUCHING))
     rows = np.isin(group.reshape(-1), may_touch)
-    corners = assembly.positions[assembly.surface.triangles[triangles[rows]]]
+    corners = assembly.positions[assembly.surface.triangles[ordered[rows]]]
     numbered = np.searchsorted(may_touch, group.reshape(-1)[rows]).astype(np.int32)
-    depth = DEEPEST_TOUCHING * rounding_of(assembly.positions)
-    touching = touching_from_outside(corners[:, 0], corners[:, 1], numbered, depth)
+    touching = touching_from_outside(corners[:, 0], corners[:, 1], numbered)
     return frozenset((str(names[a]), str(names[b])) for a, b in both[may_touch[touching]].tolist())
 
 
