@@ -25,6 +25,7 @@ _MOST_CHOSEN = 8  # of these that a translation combines
 _ROUNDS = 4  # of translations, after each of which other triangles may touch
 _LONGEST = 8  # of a translation, in the depth and the gap of one contact
 _SHRUNK = 8  # depths, of the least extent
+_LEAST_EXTENT = 1000  # depths of what shrinks, so that it does so by less than a hundredth
 _ALIKE = 0.9999  # cosine of the angle of normals that face the same way
 _SAME = 1e-5  # components of unit vectors that differ by less belong to one direction
 
@@ -127,11 +128,21 @@ def _can_part(first: Floats, second: Floats, depth: float) -> bool:
     surface = Surface(triangles, len(corners), vertex_body=moves.astype(np.int32), bodies=bodies)
     if find_parting(surface, corners, moves, depth, depth=depth) is not None:
         return True
-    middle, extent = first.min(axis=(0, 1)) / 2 + first.max(axis=(0, 1)) / 2, np.ptp(first, axis=(0, 1)).min()
-    if extent < _SHRUNK * depth:
-        return False
-    corners[moves] += (middle - corners[moves]) * (_SHRUNK * depth / extent)
-    return len(IntersectionTest(surface).find(corners)) == 0
+    test, shrunk = IntersectionTest(surface), (_shrunk(corners, rows, depth) for rows in (moves, ~moves))
+    return any(each is not None and len(test.find(each)) == 0 for each in shrunk)
+
+
+def _shrunk(corners: Floats, rows: _Flags, depth: float) -> Floats | None:
+    """Corners, (n, 3), some of which are moved toward their middle, those at the sides by more than the depth; None if
+    they are flat.
+    """
+    own = corners[rows]
+    middle, extent = (own.min(axis=0) + own.max(axis=0)) / 2, float(np.ptp(own, axis=0).min())
+    if extent < _LEAST_EXTENT * depth:
+        return None
+    shrunk = corners.copy()
+    shrunk[rows] += (middle - own) * (_SHRUNK * depth / extent)
+    return shrunk
 
 
 def find_parting(

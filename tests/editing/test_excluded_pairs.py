@@ -397,6 +397,79 @@ def test_a_flat_pyramid_does_not_pass_the_sheet_on_which_it_stands(height: float
     assert session.surface[4:, 2].min() > -STORED
 
 
+class Standing:
+    """A prism that stands on a floor, both with random triangles, and keeps no distance from it."""
+
+    def __init__(self, seed: int, rigid: bool) -> None:
+        chance = np.random.default_rng(seed)
+        cells, corners, middle = chance.integers(1, 8), chance.integers(3, 9), chance.uniform(-1, 1, 2)
+        floor = triangulated(grid(cells, cells, 12, 12))
+        ring = [middle + (np.cos(angle), np.sin(angle)) for angle in np.linspace(0, 6, corners)]
+        prism = np.array([(*place, z) for z in (0, 1) for place in ring])
+        sides = [(k, (k + 1) % corners, corners + (k + 1) % corners, corners + k) for k in range(corners)]
+        faces = [(k, a, b) for a, b, c, d in sides for k, a, b in ((a, b, c), (a, c, d))]
+        faces += [(0, k + 1, k) for k in range(1, corners - 1)]
+        faces += [(corners, corners + k, corners + k + 1) for k in range(1, corners - 1)]
+        count = len(floor.vertices)
+        start = np.concatenate([floor.vertices, prism]).astype(np.float32).astype(float)
+        surface = stiv.Surface(
+            np.concatenate([floor.triangles(), np.array(faces) + count]),
+            len(start),
+            vertex_body=np.repeat([0, 1], [count, len(prism)]),
+            bodies=[stiv.Body("floor", "fixed"), stiv.Body("prism", "rigid" if rigid else "deformable")],
+        )
+        self.prism, rows = start[count:], np.arange(count, len(start), dtype=np.int32)
+        part, self.rest = stiv.identity(len(prism)), self.prism
+        if rigid:
+            part, self.rest = stiv.rigid(self.prism), stiv.rigid_rest_controls(self.prism)
+        options = stiv.EditOptions(
+            touching=[0, 1],
+            storage=[stiv.StorageFrame(0, 0, np.eye(4))],
+            pair_separations={(0, 1): 1e-6},
+            weights=[1.0, 0.0] if rigid else None,
+        )
+        self.session = stiv.EditSession(surface, stiv.concatenate([(part, rows)], start), self.rest, options)
+
+    @property
+    def shown(self) -> np.ndarray:
+        return self.session.surface[-len(self.prism) :]
+
+
+@pytest.mark.parametrize("kind", ["move", "turn", "stretch"])
+@pytest.mark.parametrize("seed", range(12))
+def test_what_stands_on_a_floor_reaches_any_place_in_its_plane(seed: int, kind: str) -> None:
+    """The edges inside the floor lie in the plane in which its corners move."""
+    rigid = kind != "stretch" and seed % 2 == 0
+    standing, chance = Standing(seed, rigid), np.random.default_rng(seed)
+    way, angle = np.append(chance.uniform(-2, 2, 2), 0), chance.uniform(-1, 1)
+    if kind == "move":
+        wanted, control = standing.prism + way, [way, (0, 0, 0)]
+    elif kind == "turn":
+        middle = standing.prism.mean(axis=0)
+        wanted, control = turned(standing.prism - middle, np.array([0, 0, angle])) + middle, [(0, 0, 0), (0, 0, angle)]
+    else:
+        wanted, control = standing.prism * (*chance.uniform(0.6, 1.5, 2), 1), []
+    goal = standing.rest + control if rigid else wanted
+    for share in np.linspace(0.1, 1, 10):
+        standing.session.edit(standing.rest + share * (goal - standing.rest))
+    assert standing.shown == pytest.approx(wanted, abs=2 * STORED)
+
+
+@pytest.mark.parametrize("rigid", [True, False])
+@pytest.mark.parametrize("seed", range(8))
+def test_what_stands_on_a_floor_moves_anywhere_but_below(seed: int, rigid: bool) -> None:
+    standing, chance = Standing(seed, rigid), np.random.default_rng(seed)
+    for _ in range(6):
+        goal = standing.rest.copy()
+        goal[: 1 if rigid else None] += chance.uniform(-1, 1, 3)
+        if rigid:
+            goal[1] += chance.uniform(-0.5, 0.5, 3)
+        else:
+            goal += chance.normal(scale=0.2, size=goal.shape)
+        standing.session.edit(goal)
+        assert standing.shown[:, 2].min() > -STORED
+
+
 @pytest.mark.parametrize("content", ["crate", "rug"])
 def test_a_crate_in_a_room_rises_but_does_not_pass_its_floor(content: str) -> None:
     """The faces of the room look inward."""

@@ -97,11 +97,49 @@ def test_the_bottom_is_not_pressed_into_the_floor() -> None:
     assert evaluated(cube) == pytest.approx(before, abs=ROUNDING)
 
 
-def test_a_turn_about_the_normal_keeps_the_height() -> None:
-    cube = edited(cube_on_floor(), lambda _: True)
-    before = evaluated(cube)
-    applied(turn(0.5, "Z"), "rotate")
-    assert np.abs(evaluated(cube) - before)[:, 2].max() < 1e-3
+@settings(suppress_health_check=SUPPRESSED, max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_any_motion_in_the_plane_of_the_floor_arrives(seed: int) -> None:
+    """The edges of the floor's faces do not hold what stands on it."""
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+    chance = np.random.default_rng(seed)
+    add_grid("Floor", int(chance.integers(1, 17)), 12.0)
+    place = (*chance.uniform(-1, 1, 2), 1)
+    if chance.random() < 0.5:
+        bpy.ops.mesh.primitive_cylinder_add(vertices=int(chance.integers(3, 33)), location=place)
+    cube = bpy.context.object if bpy.context.object else add_cube("Cube", place)
+    cube.rotation_euler.z = chance.uniform(-1, 1)
+    edited(cube, lambda _: True)
+    before, kind = evaluated(cube), str(chance.choice(["move", "rotate", "scale"]))
+    matrix = {
+        "move": shift(*chance.uniform(-2, 2, 2)),
+        "rotate": turn(chance.uniform(-0.6, 0.6), "Z"),
+        "scale": np.diag([*chance.uniform(0.7, 1.4, 2), 1, 1]),
+    }[kind]
+    applied(matrix, kind)
+    assert evaluated(cube) == pytest.approx(before @ matrix[:3, :3].T + matrix[:3, 3], abs=ROUNDING)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_cage_moves_on_and_beside_a_table_but_not_into_it(seed: int) -> None:
+    """Its faces and edges slide over those of the table, whose inside is compared with points on the cage."""
+    chance = np.random.default_rng(seed)
+    add_cube("Table", (0, 0, -0.5), 0.5, scale=(4, 3, 1))
+    cube = add_cube("Cube", (*chance.uniform(-1, 1, 2), 1))
+    for _ in range(5):
+        way = chance.choice([-2, -1, -0.5, 0, 0, 0.5, 1, 2], 3) * (1, 1, 0.5)
+        edited(cube, lambda _: True)
+        middle = evaluated(cube).mean(axis=0)
+        applied(shift(*way) @ turn(chance.uniform(-0.3, 0.3), "Z", middle), "rotate")
+        assert _depth_in_table(cube, chance) < ROUNDING
+
+
+def _depth_in_table(cube: Any, chance: np.random.Generator) -> float:
+    """How deep random points on a mesh are inside the table."""
+    cube.data.calc_loop_triangles()
+    corners = evaluated(cube)[[list(each.vertices) for each in cube.data.loop_triangles]]
+    points = (chance.dirichlet([0.5] * 3, 500) @ corners).reshape(-1, 3)
+    return float((np.array([2, 1.5, 0.5]) - np.abs(points - [0, 0, -0.5])).min(axis=1).max())
 
 
 @settings(suppress_health_check=SUPPRESSED, max_examples=12, deadline=None)
