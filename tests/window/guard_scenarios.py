@@ -99,6 +99,34 @@ def guard_scale(window: Window) -> Steps:
     assert bpy.data.objects["Box"].scale.x == 1.0, bpy.data.objects["Box"].scale
 
 
+def guard_touching(window: Window) -> Steps:
+    """A box that touches the wall is guarded against it: along it, G stays exact; into it, the box only slides."""
+
+    def build() -> None:
+        scenes.add_box().location.x = FURTHEST
+
+    yield from guarded(window, build, "Box")
+    watcher = extension.module("guard.watcher")
+    assert watcher.state(bpy.context) == "guarded", watcher.state(bpy.context)
+    before = box_x()
+    yield from window.rest_at((0.0, 0.0, 0.0))
+    window.key("G")
+    yield from window.until(lambda: len(window.handle.modal_operators) > 0, "Blender's tool")
+    yield from window.type("y0.5")
+    window.key("RET")
+    yield from window.until(lambda: len(window.handle.modal_operators) == 0, "the end of Blender's tool")
+    yield from at_rest(window)
+    assert (box_x(), bpy.data.objects["Box"].location.y) == (before, 0.5), bpy.data.objects["Box"].location
+    yield from with_tool(window, "G", (1.5, 0.5, 0.0))
+    window.picture("guard_touching")
+    expect_near(box_x(), before, 1e-4, "the box at the wall")
+    expect_near(bpy.data.objects["Box"].location.y, 1.0, 0.05, "the box that has slid")
+    assert watcher.state(bpy.context) == "guarded", watcher.state(bpy.context)
+    yield from window.undo()
+    yield from at_rest(window)
+    assert (box_x(), bpy.data.objects["Box"].location.y) == (before, 0.5), bpy.data.objects["Box"].location
+
+
 def guard_cancelled_tool(window: Window) -> Steps:
     """A tool that is cancelled leaves nothing to correct, and no step."""
     yield from guarded(window, scenes.add_box, "Box")
@@ -124,6 +152,7 @@ def guard_redo_panel(window: Window) -> Steps:
 
 
 _ALL = (
+    guard_touching,
     guard_move,
     guard_through_wall,
     guard_scale,

@@ -18,10 +18,10 @@ from stiv.blender.controls.participants import (
     merge_participants,
     moves_surface,
 )
-from stiv.blender.edit.blender_edit import BlenderEdit, Start
+from stiv.blender.edit.blender_edit import BlenderEdit
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
-from stiv.blender.edit.touching_start import start_apart_steps, start_clear_steps
+from stiv.blender.edit.touching_start import start_apart_steps
 from stiv.blender.guard.changes import Change, Changes, compare
 from stiv.blender.guard.known_intersections import KnownIntersections, ObjectPair, find_intersections_steps
 from stiv.blender.guard.scene_state import SceneState, read_state
@@ -107,13 +107,11 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(
-            context, settings, wanted, names, end, start_apart_steps if touching else start_clear_steps
-        )
+        outcomes = yield from _passes(context, settings, wanted, names, end)
         is_free = all(outcome.reached for outcome in outcomes) and _is_tool_result_free(
             context, wanted, chosen, outcomes
         )
-        if is_free or (touching and (yield from _only_touches(context, settings, wanted, chosen, outcomes, touching))):
+        if is_free or (yield from _only_touches(context, settings, wanted, chosen, outcomes, touching)):
             return ToolCorrection(False, names, deformers=deformers, notes=_notes_of(outcomes))
     except Left:
         raise
@@ -262,12 +260,7 @@ def _only_touches(
 
 
 def _passes(
-    context: bpy.types.Context,
-    settings: EditSettings,
-    wanted: SceneState,
-    names: Sequence[str],
-    end: float,
-    start: Start,
+    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], end: float
 ) -> Steps[list[Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children.
 
@@ -290,7 +283,7 @@ def _passes(
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {_operation(change, done) for change in now}
         goals = ToolGoals.between(present, wanted, now)
-        outcomes.append((yield from _edit(context, settings, goals, kind, end, start)))
+        outcomes.append((yield from _edit(context, settings, goals, kind, end)))
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
@@ -321,13 +314,13 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
 
 
 def _edit(
-    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float, start: Start
+    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float
 ) -> Steps[Outcome]:
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
     edit = yield from BlenderEdit.begin_with_steps(
         context, correction_settings(settings), kind, _participants(context, settings, goals.changes),
-        lambda control_set: with_response(control_set, goals, settings), start=start,
+        lambda control_set: with_response(control_set, goals, settings), start=start_apart_steps,
     )  # fmt: skip
     goal = stack_controls([controls_after(each, goals) for each in edit.control_sets])
     return (yield from move_to_goal(edit, goal, end))
