@@ -16,7 +16,7 @@ from stiv.surface import Body, Surface
 _Flags = NDArray[np.bool_]
 
 DEEPEST = 16  # of triangles that only touch, in roundings of their corners
-DEEPEST_LEFT = 64  # that an edit leaves: 16 roundings of its coordinates, which may have been larger than they are now
+DEEPEST_LEFT = 64  # after edits: each leaves 16 roundings of its coordinates, which may have been larger than now
 
 _FIRST = 256  # pairs that are tested before all others; where surfaces cut each other, one of these mostly does
 _SAMPLE = 4096  # pairs whose axes are compared
@@ -25,7 +25,7 @@ _MOST_CHOSEN = 8  # of these that a translation combines
 _ROUNDS = 4  # of translations, after each of which other triangles may touch
 _LONGEST = 8  # of a translation, in the depth and the gap of one contact
 _SHRUNK = 8  # depths, of the least extent
-_LEAST_EXTENT = 1000  # depths of what shrinks, so that it does so by less than a hundredth
+_LEAST_EXTENT = 1000  # depths; bodies shrink by less than a hundredth
 _ALIKE = 0.9999  # cosine of the angle of normals that face the same way
 _SAME = 1e-5  # components of unit vectors that differ by less belong to one direction
 
@@ -85,7 +85,7 @@ def _touching_depths(first: Floats, second: Floats, group: Indices) -> Floats:
 def _lie_on_each_other(first: Floats, second: Floats, group: Indices, depths: Floats) -> _Flags:
     """Flags the groups in which the plane of two triangles that face each other separates all, but for the depth.
 
-    Faster than `_are_beside` for one after the other. depths: of each group.
+    Faster than `_are_beside` for each group. depths: of each group.
     """
     normals = [_normals(each) for each in (first, second)]
     areas = np.linalg.norm(normals, axis=2).min(axis=0)
@@ -119,7 +119,7 @@ def _are_beside(first: Floats, second: Floats, depth: float) -> bool:
 def _can_part(first: Floats, second: Floats, depth: float) -> bool:
     """Does a translation, or a shrinking, of the size of the depth part two sets of triangles, (n, 3, 3) and (m, 3, 3)?
 
-    What is held between two walls shrinks.
+    Triangles between two walls can only shrink.
     """
     corners = np.concatenate([first, second]).reshape(-1, 3)
     triangles = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)

@@ -437,7 +437,7 @@ class Standing:
 
 @pytest.mark.parametrize("kind", ["move", "turn", "stretch"])
 @pytest.mark.parametrize("seed", range(12))
-def test_what_stands_on_a_floor_reaches_any_place_in_its_plane(seed: int, kind: str) -> None:
+def test_a_prism_on_a_floor_reaches_any_place_in_its_plane(seed: int, kind: str) -> None:
     """The edges inside the floor lie in the plane in which its corners move."""
     rigid = kind != "stretch" and seed % 2 == 0
     standing, chance = Standing(seed, rigid), np.random.default_rng(seed)
@@ -457,7 +457,7 @@ def test_what_stands_on_a_floor_reaches_any_place_in_its_plane(seed: int, kind: 
 
 @pytest.mark.parametrize("rigid", [True, False])
 @pytest.mark.parametrize("seed", range(8))
-def test_what_stands_on_a_floor_moves_anywhere_but_below(seed: int, rigid: bool) -> None:
+def test_a_prism_on_a_floor_moves_anywhere_but_below(seed: int, rigid: bool) -> None:
     standing, chance = Standing(seed, rigid), np.random.default_rng(seed)
     for _ in range(6):
         goal = standing.rest.copy()

@@ -53,7 +53,7 @@ std::optional<Plane> common_plane(const Triangles& triangles, Index a, Index b, 
   return faces && plane.contains(triangles, b, q) ? std::optional(plane) : std::nullopt;
 }
 
-/// Triangles of one part in such a plane, and neighbors that leave it.
+/// Triangles of one part in that plane, and neighbors that leave it.
 struct Region {
   std::set<Index> inside, outside;
   std::vector<Index> last;  // inside, their neighbors not yet examined

@@ -212,8 +212,8 @@ void ExcludedPairs::take_contacts(const IndexPairs& contacts, const SurfaceParts
   std::sort(flush_.begin(), flush_.end());
 }
 
-/// Takes the pairs in the planes of contacts, too, where bodies keep no distance: an edge or a corner that lies in such
-/// a plane would otherwise stop at faces that it reaches later.
+/// Takes the pairs in the planes of contacts, too, where bodies keep no distance: an edge or a corner in that plane
+/// would otherwise stop at faces that it reaches later.
 void ExcludedPairs::take_contact_planes(const Given& given, const SurfaceParts& parts, const PositionsView& start) {
   IndexPairs sliding;
   std::copy_if(flush_.begin(), flush_.end(), std::back_inserter(sliding), [&](const auto& pair) {

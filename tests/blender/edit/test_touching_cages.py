@@ -100,7 +100,7 @@ def test_the_bottom_is_not_pressed_into_the_floor() -> None:
 @settings(suppress_health_check=SUPPRESSED, max_examples=20, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_any_motion_in_the_plane_of_the_floor_arrives(seed: int) -> None:
-    """The edges of the floor's faces do not hold what stands on it."""
+    """The edges of the floor's faces do not hold a cage that stands on it."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     chance = np.random.default_rng(seed)
     add_grid("Floor", int(chance.integers(1, 17)), 12.0)

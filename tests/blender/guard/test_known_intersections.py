@@ -88,7 +88,7 @@ def test_vertices_on_the_floor_slide_exactly_and_never_enter_it() -> None:
     assert evaluated(crate)[:, 2].min() > -DEEPEST and cutting() == set()
 
 
-def test_a_floor_stops_below_what_stands_on_it() -> None:
+def test_a_floor_stops_below_the_crate_on_it() -> None:
     crate_on_the_floor()
     floor = bpy.data.objects["Floor"]
     assert guarded(translated(floor, 0, 0, 0.5)).blocking == ["Crate"]
