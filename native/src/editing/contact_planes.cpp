@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t most_pairs = 100'000;        // of all contacts
 constexpr std::size_t most_pairs_of_two = 10'000;  // of one contact
+constexpr std::size_t most_planes = 64;            // of two parts: a curved contact has one for each triangle
 constexpr double least_cosine = 0.9;               // of two triangles that lie on each other: small ones are tilted
 
 Vector3 corner_of(const Triangles& triangles, Index triangle, int k, const PositionsView& q) {
@@ -104,7 +105,10 @@ Contacts contacts_of(const Triangles& triangles, const SurfaceParts& parts, cons
     auto contact = std::find_if(contacts.begin(), contacts.end(), [&](const Contact& each) {
       return each.plane.contains(triangles, a, q) && each.plane.contains(triangles, b, q);
     });
-    if (contact == contacts.end()) contact = contacts.insert(contacts.end(), {*plane, {}, {}});
+    if (contact == contacts.end()) {
+      if (contacts.size() == most_planes) continue;
+      contact = contacts.insert(contacts.end(), {*plane, {}, {}});
+    }
     contact->first.add(a);
     contact->second.add(b);
   }

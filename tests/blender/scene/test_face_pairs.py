@@ -75,6 +75,9 @@ def test_pairs_as_arrays_are_those_of_a_list(some: list[FacePair], others: list[
     for pair in some:
         by_objects.setdefault(tuple(sorted((pair.first.object, pair.second.object))), []).append(pair)
     assert list(pairs.by_objects().items()) == list(by_objects.items())
+    touching = frozenset(names for names in by_objects if names[0] != names[1])
+    marked = FacePairs(pairs.owners, pairs.owner, pairs.number, pairs.triangle_pairs, touching)
+    assert marked[1:].cutting() == [pair for pair in some[1:] if pair.first.object == pair.second.object]
     assert pairs.sides() == {frozenset((pair.first.object, pair.second.object)) for pair in some}
     faces = {each for pair in some for each in (pair.first, pair.second) if each.kind == "face"}
     assert {replace(owner, number=n) for owner, numbers in pairs.faces() for n in numbers.tolist()} == faces

@@ -47,8 +47,9 @@ def find_intersections_steps(context: bpy.types.Context, settings: EditSettings)
     pairs = name_pairs(assembly, triangles, settings.threads, 0 if len(settings.excluded) else MOST)
     yield from turns.take()
     loose = pairs.chosen(pairs.where(lambda *both: {each.kind for each in both} != {"face"}))
-    pairs.touching = _touching_objects(assembly, triangles) - set(loose.by_objects())
-    return without_excluded(pairs, settings.excluded)
+    touching = _touching_objects(assembly, triangles) - set(loose.by_objects())
+    found = FacePairs(pairs.owners, pairs.owner, pairs.number, pairs.triangle_pairs, touching)
+    return without_excluded(found, settings.excluded)
 
 
 def _touching_objects(assembly: Assembly, triangles: Indices) -> frozenset[ObjectPair]:
