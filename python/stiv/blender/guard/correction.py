@@ -363,9 +363,14 @@ def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
 
 
 def _is_near(edit: BlenderEdit, goal: Floats) -> bool:
-    """Is the accepted surface within some roundings of that of the goal?"""
-    surface = edit.surface
-    return bool(np.abs(edit.surface_of(goal) - surface).max(initial=0.0) <= NEAR * rounding_of(surface))
+    """Are the accepted controls and their surface within some roundings of the goal and its surface?
+
+    Where the topology changes, the surface of the goal is not that of its controls.
+    """
+    controls, surface = edit.controls, edit.surface
+    tolerance = NEAR * max(rounding_of(controls), rounding_of(surface))
+    differences = (goal - controls, edit.surface_of(goal) - surface)
+    return all(float(np.abs(each).max(initial=0.0)) <= tolerance for each in differences)
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:
