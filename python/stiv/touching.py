@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that only touch: whether they do, and the least translation that parts them, of the size of rounding."""
+"""The least translation that parts bodies from others which they only touch, of the size of rounding."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiv.arrays import Floats, Indices
 from stiv.intersections import IntersectionTest, intersection_depths
-from stiv.surface import Body, Surface
+from stiv.surface import Surface
 
 _Flags = NDArray[np.bool_]
 
 DEEPEST = 16  # of triangles that only touch, in roundings of their corners
 DEEPEST_LEFT = 64  # after edits: each leaves 16 roundings of its coordinates, which may have been larger than now
+SAME = 1e-5  # components of unit vectors that differ by less belong to one direction
 
 _FIRST = 256  # pairs that are tested before all others; where surfaces cut each other, one of these mostly does
 _SAMPLE = 4096  # pairs whose axes are compared
@@ -24,10 +25,6 @@ _MOST_AXES = 64  # directions that separate pairs, the most frequent ones
 _MOST_CHOSEN = 8  # of these that a translation combines
 _ROUNDS = 4  # of translations, after each of which other triangles may touch
 _LONGEST = 8  # of a translation, in the depth and the gap of one contact
-_SHRUNK = 8  # depths, of the least extent
-_LEAST_EXTENT = 1000  # depths; bodies shrink by less than a hundredth
-_ALIKE = 0.9999  # cosine of the angle of normals that face the same way
-_SAME = 1e-5  # components of unit vectors that differ by less belong to one direction
 
 
 def rounding_of(points: Floats) -> float:
@@ -42,107 +39,14 @@ def are_touching(first: Floats, second: Floats, depth: float | None = None) -> b
     """
     deepest, end = _tolerance(first, second) if depth is None else depth, len(first)
     parts = ((0, min(_FIRST, end)), (_FIRST, end))
-    return all(_depths(first[begin:stop], second[begin:stop]).max(initial=0.0) <= deepest for begin, stop in parts)
+    return all(depths_of(first[begin:stop], second[begin:stop]).max(initial=0.0) <= deepest for begin, stop in parts)
 
 
-def _depths(first: Floats, second: Floats) -> Floats:
+def depths_of(first: Floats, second: Floats) -> Floats:
     """How deep triangles, (k, 3, 3) each, cut into those of the same row, (k,)."""
     points = np.concatenate([first, second]).reshape(-1, 3)
     triangles = np.arange(len(points), dtype=np.int32).reshape(-1, 3)
     return intersection_depths(points, triangles, np.arange(len(triangles), dtype=np.int32).reshape(2, -1).T)
-
-
-def touching_from_outside(first: Floats, second: Floats, group: Indices) -> _Flags:
-    """Return which groups of rows, (g,), are contacts of two surfaces beside each other.
-
-    first, second  triangles, (k, 3, 3) each, that intersect those of the same row
-    group          (k,) numbers from 0, each once at least, of two surfaces that meet in these rows
-
-    No triangle of these groups cuts deeper than rounding, and none covers a part of one in its plane that faces the
-    same way. A plane separates the surfaces there, or a translation or shrinking of the size of rounding parts them. So
-    they do not cross each other along edges.
-    """
-    depths = _touching_depths(first, second, group)
-    is_deep = (_depths(first, second) > depths[group]) | _cover(first, second, depths[group])
-    touching: _Flags = np.bincount(group[is_deep], minlength=len(depths)) == 0
-    for number in np.flatnonzero(touching & ~_lie_on_each_other(first, second, group, depths)).tolist():
-        own = group == number
-        a, b = (np.unique(each[own].reshape(-1, 9), axis=0).reshape(-1, 3, 3) for each in (first, second))
-        touching[number] = _are_beside(a, b, depths[number]) or _can_part(a, b, depths[number])
-    return touching
-
-
-def _touching_depths(first: Floats, second: Floats, group: Indices) -> Floats:
-    """The depth of touching surfaces, for each group: that of rounding, or the one that edits leave."""
-    sizes = np.zeros((2, int(group.max(initial=-1)) + 1), np.float32)
-    for side, each in enumerate((first, second)):
-        np.maximum.at(sizes[side], group, np.abs(each).max(axis=(1, 2)).astype(np.float32))
-    roundings = np.spacing(sizes).astype(np.float64)
-    depths: Floats = np.maximum(DEEPEST * roundings.max(axis=0), DEEPEST_LEFT * roundings.min(axis=0))
-    return depths
-
-
-def _lie_on_each_other(first: Floats, second: Floats, group: Indices, depths: Floats) -> _Flags:
-    """Flags the groups in which the plane of two triangles that face each other separates all, but for the depth.
-
-    Faster than `_are_beside` for each group. depths: of each group.
-    """
-    normals = [_normals(each) for each in (first, second)]
-    areas = np.linalg.norm(normals, axis=2).min(axis=0)
-    facing = np.flatnonzero(np.einsum("kj,kj->k", *map(_unit, normals)) < -_ALIKE)
-    facing = facing[np.argsort(areas[facing], kind="stable")]
-    count = len(depths)
-    best = np.full(count, -1)
-    best[group[facing]] = facing  # the last of equal groups remains: the largest
-    axes = np.where((best >= 0)[:, None], _unit(normals[0])[best], 0.0)[group]
-    heights = [np.einsum("kcj,kj->kc", each, axes) for each in (first, second)]
-    low, high = np.full((2, count), np.inf), np.full((2, count), -np.inf)
-    for side, each in enumerate(heights):
-        np.minimum.at(low[side], group, each.min(axis=1))
-        np.maximum.at(high[side], group, each.max(axis=1))
-    overlaps = np.minimum(high[0] - low[1], high[1] - low[0])
-    separated: _Flags = (best >= 0) & (overlaps <= depths)
-    return separated
-
-
-def _are_beside(first: Floats, second: Floats, depth: float) -> bool:
-    """Does a plane of one of the triangles, (n, 3, 3) and (m, 3, 3), separate them, but for the depth?"""
-    normals = np.concatenate([_normals(first), _normals(second)])
-    normals = normals[np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")]  # those of large ones are exact
-    axes = _unit(normals)
-    axes = axes[np.unique(np.round(axes / _SAME), axis=0, return_index=True)[1]]
-    a, b = (each.reshape(-1, 3) @ axes.T for each in (first, second))
-    overlaps = np.minimum(a.max(axis=0) - b.min(axis=0), b.max(axis=0) - a.min(axis=0))
-    return bool((overlaps[axes.any(axis=1)] <= depth).any())
-
-
-def _can_part(first: Floats, second: Floats, depth: float) -> bool:
-    """Does a translation, or a shrinking, of the size of the depth part two sets of triangles, (n, 3, 3) and (m, 3, 3)?
-
-    Triangles between two walls can only shrink.
-    """
-    corners = np.concatenate([first, second]).reshape(-1, 3)
-    triangles = np.arange(len(corners), dtype=np.int32).reshape(-1, 3)
-    moves = np.arange(len(corners)) < 3 * len(first)
-    bodies = [Body("second", "fixed"), Body("first", "rigid")]
-    surface = Surface(triangles, len(corners), vertex_body=moves.astype(np.int32), bodies=bodies)
-    if find_parting(surface, corners, moves, depth, depth=depth) is not None:
-        return True
-    test, shrunk = IntersectionTest(surface), (_shrunk(corners, rows, depth) for rows in (moves, ~moves))
-    return any(each is not None and len(test.find(each)) == 0 for each in shrunk)
-
-
-def _shrunk(corners: Floats, rows: _Flags, depth: float) -> Floats | None:
-    """Corners, (n, 3), some of which are moved toward their middle, those at the sides by more than the depth; None if
-    they are flat.
-    """
-    own = corners[rows]
-    middle, extent = (own.min(axis=0) + own.max(axis=0)) / 2, float(np.ptp(own, axis=0).min())
-    if extent < _LEAST_EXTENT * depth:
-        return None
-    shrunk = corners.copy()
-    shrunk[rows] += (middle - own) * (_SHRUNK * depth / extent)
-    return shrunk
 
 
 def find_parting(
@@ -207,7 +111,7 @@ class _Contacts:
         parts = needed <= self._tolerance + self._gap
         ranks, chosen, shift = self._ranks(axes, a, b), list[int](), np.zeros(3)
         while True:
-            left = (needed > axes @ shift + _SAME * self._gap).all(axis=1)
+            left = (needed > axes @ shift + SAME * self._gap).all(axis=1)
             if not left.any():
                 return shift
             counts = np.count_nonzero(parts[left], axis=0)
@@ -223,10 +127,10 @@ class _Contacts:
 
     def _separating(self, a: Floats, b: Floats) -> Floats:
         """The directions, (m, 3), along which a pair is parted by a motion of the size of rounding."""
-        axes = _axes(a, b)
+        axes = axes_of(a, b)
         both = np.concatenate([axes, -axes], axis=1)
-        found = both[_overlaps_along(axes, a, b) <= self._tolerance]
-        _, first, counts = np.unique(np.round(found / _SAME) + 0.0, axis=0, return_index=True, return_counts=True)
+        found = both[overlaps_along(axes, a, b) <= self._tolerance]
+        _, first, counts = np.unique(np.round(found / SAME) + 0.0, axis=0, return_index=True, return_counts=True)
         often = np.argsort(-counts, kind="stable")[:_MOST_AXES]
         directions: Floats = found[first[often]]
         return directions
@@ -247,7 +151,7 @@ def _tolerance(first: Floats, second: Floats) -> float:
     return DEEPEST * max(rounding_of(first), rounding_of(second))
 
 
-def _axes(a: Floats, b: Floats) -> Floats:
+def axes_of(a: Floats, b: Floats) -> Floats:
     """Unit axes, (k, 17, 3), of which one separates two triangles of a row, (k, 3, 3) each, that do not intersect.
 
     The normals, their products with the edges for triangles in one plane, and the products of the edges; 0 for those
@@ -265,10 +169,10 @@ def _axes(a: Floats, b: Floats) -> Floats:
     ]
     axes = np.concatenate(rows, axis=1)
     norms = np.linalg.norm(axes, axis=2, keepdims=True)
-    return np.where(norms > _SAME, axes / np.maximum(norms, _SAME), 0.0)
+    return np.where(norms > SAME, axes / np.maximum(norms, SAME), 0.0)
 
 
-def _overlaps_along(axes: Floats, a: Floats, b: Floats) -> Floats:
+def overlaps_along(axes: Floats, a: Floats, b: Floats) -> Floats:
     """How far each first triangle must move to lie beyond the second, (k, 2 m), along axes, (k, m, 3), and back.
 
     Infinite for axes without a length.
@@ -290,36 +194,25 @@ def _least_beyond(normals: Floats, heights: Floats) -> Floats | None:
     best: Floats | None = None
     rows = (list(each) for size in (1, 2, 3) for each in combinations(range(len(heights)), size))
     for chosen in rows:
-        vector: Floats = np.linalg.lstsq(normals[chosen], heights[chosen], rcond=_SAME)[0].astype(np.float64)
-        reaches = bool((normals @ vector >= heights * (1 - _SAME)).all())
+        vector: Floats = np.linalg.lstsq(normals[chosen], heights[chosen], rcond=SAME)[0].astype(np.float64)
+        reaches = bool((normals @ vector >= heights * (1 - SAME)).all())
         if reaches and (best is None or np.linalg.norm(vector) < np.linalg.norm(best)):
             best = vector
     return best
 
 
-def _cover(first: Floats, second: Floats, depths: Floats) -> _Flags:
-    """Flags the triangles, (k, 3, 3), that face like that of the same row, and cover a part wider than the depth."""
-    normals = [_unit(_normals(each)) for each in (first, second)]
-    covers: _Flags = np.einsum("kj,kj->k", *normals) > _ALIKE
-    axes = _axes(first[covers], second[covers])
-    overlaps = np.minimum(*np.split(_overlaps_along(axes, first[covers], second[covers]), 2, axis=1))
-    is_across = np.abs(np.einsum("kmj,kj->km", axes, normals[0][covers])) > _ALIKE
-    covers[covers] = (np.where(is_across, np.inf, overlaps) > depths[covers, None]).all(axis=1)
-    return covers
-
-
 def _mean_normal(triangles: Floats) -> Floats:
     """The mean unit normal, (3,), of triangles, (k, 3, 3)."""
-    mean: Floats = _unit(_normals(triangles)).mean(axis=0)
+    mean: Floats = unit_of(normals_of(triangles)).mean(axis=0)
     return mean
 
 
-def _normals(triangles: Floats) -> Floats:
+def normals_of(triangles: Floats) -> Floats:
     """Normals of triangles, (k, 3, 3), whose length is twice their area, (k, 3)."""
     return np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
 
 
-def _unit(vectors: Floats) -> Floats:
+def unit_of(vectors: Floats) -> Floats:
     """Vectors, (k, 3), of length 1, or 0."""
     unit: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1), np.finfo(float).tiny)[:, None]
     return unit

@@ -33,9 +33,6 @@ from stiv.task import Steps
 from stiv.touching import DEEPEST, DEEPEST_LEFT, are_touching, find_parting, rounding_of
 
 GAP = 8  # between parted objects, in roundings of the moving objects
-DEEPER = (
-    8  # gaps to which objects that only touch may cut: an edit leaves two, of coordinates that may have been larger
-)
 SURPLUS = 1 + 2.0**-20  # of coordinates: a session computes them again, which may round to a larger power of two
 NEAR = 4  # gaps within which objects are in contact
 KEPT = 0.5  # of the gap: the minimum distance where objects are in contact, the least that single precision can keep

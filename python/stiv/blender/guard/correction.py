@@ -358,7 +358,7 @@ def move_to_goal(edit: BlenderEdit, goal: Floats, end: float) -> Steps[Outcome]:
     message = report.message or "; ".join(each.note for each in edit.control_sets if each.note)
     cut = tuple(sorted(edit.moving)) if any(map(is_cut_by_topology, results[-1:])) else ()
     is_complete = report.passed and report.result is None
-    near = is_complete and _is_near(edit, goal)
+    near = is_complete and (reached or _is_near(edit, goal))
     return Outcome(edit, reached and is_complete, near, blocking, message, cut, not reached and is_over(solving_end))
 
 
@@ -369,8 +369,9 @@ def _is_near(edit: BlenderEdit, goal: Floats) -> bool:
     """
     controls, surface = edit.controls, edit.surface
     tolerance = NEAR * max(rounding_of(controls), rounding_of(surface))
-    differences = (goal - controls, edit.surface_of(goal) - surface)
-    return all(float(np.abs(each).max(initial=0.0)) <= tolerance for each in differences)
+    if np.abs(goal - controls).max(initial=0.0) > tolerance:
+        return False
+    return bool(np.abs(edit.surface_of(goal) - surface).max(initial=0.0) <= tolerance)
 
 
 def _participants(context: bpy.types.Context, settings: EditSettings, changes: dict[str, Change]) -> list[Participant]:

@@ -17,8 +17,8 @@ from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
 from stiv.blender.verify.scene_check import find_triangle_pairs, meshes_of, name_pairs, tested_names
+from stiv.outside_contacts import touching_from_outside
 from stiv.task import Steps, Turns, run
-from stiv.touching import touching_from_outside
 
 MOST = 1000  # pairs of triangles; a copy of a large mesh in the place of its original has millions
 MOST_TOUCHING = 20_000  # pairs of triangles of two objects that may touch; those with more count as cutting each other
