@@ -12,6 +12,7 @@ from building import add_cube, add_grid, evaluated
 from mathutils import Vector
 
 from stiv.blender import AcceptedScene, EditSettings, find_intersections, guard_result
+from stiv.blender.scene import obstacle_choice
 
 DEEPEST = 1e-5  # rounding of these coordinates
 Pairs = set[tuple[str, str]]
@@ -63,7 +64,12 @@ def edited(ob: Any, *way: float) -> Any:
         ((4, 0.5, 0), (2, 0.5, 1)),
     ],
 )
-def test_a_crate_slides_on_the_floor_and_never_enters_it(way: tuple[float, ...], place: tuple[float, ...]) -> None:
+@pytest.mark.parametrize("large", [False, True])
+def test_a_crate_slides_on_the_floor_and_never_enters_it(
+    way: tuple[float, ...], place: tuple[float, ...], large: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In large scenes, objects that stay are obstacles beside the surface."""
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 1 if large else 50_000)
     crate = crate_on_the_floor()
     wanted = tuple(crate.location + Vector(way))
     outcome = guarded(translated(crate, *way))
@@ -81,7 +87,9 @@ def test_turning_and_flat_scaling_on_the_floor_stay_exact_and_growth_stops() -> 
     assert evaluated(crate)[:, 2].min() > -DEEPEST and cutting() == set()
 
 
-def test_vertices_on_the_floor_slide_exactly_and_never_enter_it() -> None:
+@pytest.mark.parametrize("large", [False, True])
+def test_vertices_on_the_floor_slide_exactly_and_never_enter_it(large: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(obstacle_choice, "MIN_FACES", 1 if large else 50_000)
     crate = crate_on_the_floor()
     assert not guarded(edited(crate, 0.5, 0.2, 0)).wrote
     assert guarded(edited(crate, 0, 0, -0.5)).blocking == ["Floor"]

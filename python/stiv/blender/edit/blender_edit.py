@@ -49,6 +49,17 @@ from stiv.task import Steps, run
 Start = Callable[[Callable[..., Steps[EditSnapshot]]], Steps[tuple[EditSnapshot, EditSolver, Parting | None]]]
 
 
+def obstacles_beside(
+    context: bpy.types.Context, settings: EditSettings, participants: Sequence[Participant]
+) -> frozenset[str]:
+    """The names of the objects that are obstacles beside the surface of an edit; empty if they are small."""
+    reshaped = {each.reference.name for each in participants if each.role != "rigid"}
+    obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
+    if not obstacles:
+        forget_static_meshes()
+    return obstacles
+
+
 class BlenderEdit:
     """An edit from the snapshot of the scene to the last state written. It holds no references to Blender's data
     between calls.
@@ -102,10 +113,7 @@ class BlenderEdit:
         """Steps of `begin`; the first ones read the scene."""
         check_kind(kind)
         participants = find_participants(context, settings)
-        reshaped = {each.reference.name for each in participants if each.role != "rigid"}
-        obstacles = find_obstacles(context, [each.reference.find() for each in participants], reshaped, settings)
-        if not obstacles:
-            forget_static_meshes()
+        obstacles = obstacles_beside(context, settings, participants)
         return cls.begin_with_steps(
             context, settings, kind, participants, obstacles=obstacles, start=start_as_one_steps
         )
@@ -122,7 +130,7 @@ class BlenderEdit:
     ) -> BlenderEdit:
         """Begin with given participants. `adapt` may change the weights and goal rule of each control set.
 
-        obstacles: names of objects that are obstacles beside the surface, of `find_obstacles`.
+        obstacles: names of objects that are obstacles beside the surface, of `obstacles_beside`.
         """
         return run(cls.begin_with_steps(context, settings, kind, participants, adapt, obstacles))
 

@@ -18,7 +18,7 @@ from stiv.blender.controls.participants import (
     merge_participants,
     moves_surface,
 )
-from stiv.blender.edit.blender_edit import BlenderEdit
+from stiv.blender.edit.blender_edit import BlenderEdit, obstacles_beside
 from stiv.blender.edit.results import is_cut_by_topology
 from stiv.blender.edit.sessions import stack_controls
 from stiv.blender.edit.touching_start import start_apart_steps
@@ -107,7 +107,7 @@ def correct_after_tool_steps(
     wanted = read_state(context)
     try:
         _restore(context, accepted, chosen)
-        outcomes = yield from _passes(context, settings, wanted, names, end)
+        outcomes = yield from _passes(context, settings, wanted, names, end, touching)
         is_free = all(outcome.reached for outcome in outcomes) and _is_tool_result_free(
             context, wanted, chosen, outcomes
         )
@@ -251,16 +251,20 @@ def _only_touches(
         return False
     solved, moving = read_state(context), {name for outcome in outcomes for name in outcome.edit.moving}
     _restore(context, wanted, changes)
-    found = yield from find_intersections_steps(context, settings)
-    allowed = found.touching.intersection(touching)
-    if all(pair in allowed or (pair[0] == pair[1] and pair[0] not in moving) for pair in found.by_objects()):
+    found = yield from find_intersections_steps(context, settings, moving)
+    if found.touching.intersection(touching).issuperset(found.by_objects()):
         return True
     _restore(context, solved, changes)
     return False
 
 
 def _passes(
-    context: bpy.types.Context, settings: EditSettings, wanted: SceneState, names: Sequence[str], end: float
+    context: bpy.types.Context,
+    settings: EditSettings,
+    wanted: SceneState,
+    names: Sequence[str],
+    end: float,
+    touching: Collection[ObjectPair],
 ) -> Steps[list[Outcome]]:
     """Split changes that one edit cannot make into passes: rotation before scale, parents before children.
 
@@ -283,7 +287,7 @@ def _passes(
         now = [change for change in now if not change.placed or _kind(change, done) == kind]
         done |= {_operation(change, done) for change in now}
         goals = ToolGoals.between(present, wanted, now)
-        outcomes.append((yield from _edit(context, settings, goals, kind, end)))
+        outcomes.append((yield from _edit(context, settings, goals, kind, end, touching)))
 
 
 def _operation(change: Change, done: set[tuple[int, str]]) -> tuple[int, str]:
@@ -314,13 +318,22 @@ def _outermost(changes: Sequence[Change], states: SceneState) -> list[Change]:
 
 
 def _edit(
-    context: bpy.types.Context, settings: EditSettings, goals: ToolGoals, kind: str, end: float
+    context: bpy.types.Context,
+    settings: EditSettings,
+    goals: ToolGoals,
+    kind: str,
+    end: float,
+    touching: Collection[ObjectPair],
 ) -> Steps[Outcome]:
+    """Steps of one edit. Objects that the changed ones touch belong to the surface: there, cages start in contact."""
     if kind == "rotate" and not any(change.turned for change in goals.changes.values()):
         kind = "move"  # permitted below an unevenly scaled parent, which prevents rotation
+    participants = _participants(context, settings, goals.changes)
+    touched = [pair for pair in touching if not goals.changes.keys().isdisjoint(pair)]
     edit = yield from BlenderEdit.begin_with_steps(
-        context, correction_settings(settings), kind, _participants(context, settings, goals.changes),
-        lambda control_set: with_response(control_set, goals, settings), start=start_apart_steps,
+        context, correction_settings(settings), kind, participants,
+        lambda control_set: with_response(control_set, goals, settings),
+        obstacles_beside(context, settings, participants).difference(*touched), start_apart_steps,
     )  # fmt: skip
     goal = stack_controls([controls_after(each, goals) for each in edit.control_sets])
     return (yield from move_to_goal(edit, goal, end))

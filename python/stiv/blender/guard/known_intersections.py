@@ -35,12 +35,14 @@ def find_intersections(context: bpy.types.Context, settings: EditSettings) -> Fa
     return run(find_intersections_steps(context, settings))
 
 
-def find_intersections_steps(context: bpy.types.Context, settings: EditSettings) -> Steps[FacePairs]:
-    """Steps of `find_intersections`."""
+def find_intersections_steps(
+    context: bpy.types.Context, settings: EditSettings, moving: Collection[str] | None = None
+) -> Steps[FacePairs]:
+    """Steps of `find_intersections`. moving: names of objects; pairs of two others are left out."""
     turns = Turns()
     scene, _ = read_guarded_scene(context, settings, tested_names(context, settings), strands=True)
     yield from turns.take()
-    assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs)
+    assembly = assemble_with_seams(scene.meshes, settings.ignored_pairs, moving)
     yield from turns.take()
     triangles = find_triangle_pairs(assembly, settings.threads)
     yield from turns.take()

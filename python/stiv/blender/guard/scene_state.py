@@ -18,7 +18,7 @@ from stiv.blender.scene.arrays import Floats, Singles, as_matrix
 from stiv.blender.scene.curve_reading import read_curve_points
 from stiv.blender.scene.evaluations import is_edited, is_visible
 from stiv.blender.scene.lattice_reading import read_lattice_points
-from stiv.blender.scene.mesh_reading import read_cage
+from stiv.blender.scene.mesh_reading import read_cage, read_corner_vertices, read_edges, read_faces
 from stiv.blender.scene.references import ObjectReference, SceneChangedError
 
 
@@ -156,12 +156,8 @@ def _points(ob: bpy.types.Object) -> Singles | None:
 def _connectivity(ob: bpy.types.Object) -> int:
     if ob.type != "MESH":
         return 0
-    checksum = 0
-    for collection, attribute, width in ((ob.data.loops, "vertex_index", 1), (ob.data.edges, "vertices", 2)):
-        values = np.empty(len(collection) * width, np.int32)
-        collection.foreach_get(attribute, values)
-        checksum = zlib.crc32(values.tobytes(), checksum)
-    return checksum
+    corners = read_faces(ob.data)[0] if ob.data.is_editmode else read_corner_vertices(ob.data)
+    return zlib.crc32(read_edges(ob.data).tobytes(), zlib.crc32(corners.tobytes()))
 
 
 def _read_bone(bone: bpy.types.PoseBone) -> tuple[str, tuple[float, ...], str, tuple[float, ...], tuple[float, ...]]:

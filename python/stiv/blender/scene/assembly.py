@@ -171,10 +171,17 @@ def assemble_against_others(
     return assembly, np.repeat(np.array(moves, np.bool_), np.diff(assembly.starts))
 
 
-def assemble_with_seams(meshes: Sequence[VisibleMesh], ignored: Sequence[tuple[str, str]] = ()) -> Assembly:
-    """Assemble meshes with merged seams: strands fixed, all other meshes deformable."""
-    seams = [mesh_seams(mesh.local, mesh.triangles) if mesh.strands is None else None for mesh in meshes]
-    mobility = ["deformable" if mesh.strands is None else "fixed" for mesh in meshes]
+def assemble_with_seams(
+    meshes: Sequence[VisibleMesh], ignored: Sequence[tuple[str, str]] = (), moving: Collection[str] | None = None
+) -> Assembly:
+    """Assemble meshes with merged seams: strands fixed, all other meshes deformable.
+
+    moving: names of the objects that are tested, also against all others, which are fixed; None: all objects.
+    """
+    deforms = [mesh.strands is None and (moving is None or mesh.owner.name in moving) for mesh in meshes]
+    pairs = list(zip(meshes, deforms, strict=True))
+    seams = [mesh_seams(mesh.local, mesh.triangles) if tested else None for mesh, tested in pairs]
+    mobility = ["deformable" if tested else "fixed" for tested in deforms]
     return assemble(meshes, mobility, (), ignored, seams)
 
 

@@ -98,7 +98,10 @@ def read_triangles(mesh: bpy.types.Mesh) -> tuple[Indices, Indices]:
 
 def read_edges(mesh: bpy.types.Mesh) -> Indices:
     """All edges, (e, 2), as stored."""
-    return read_collection(mesh.edges, "vertices", 2, np.int32)
+    attribute = None if mesh.is_editmode else mesh.attributes.get(".edge_verts")  # attributes are empty in Edit Mode
+    if attribute is None:
+        return read_collection(mesh.edges, "vertices", 2, np.int32)
+    return read_collection(attribute.data, "value", 2, np.int32)  # a hundred times faster
 
 
 def read_loose_numbers(mesh: bpy.types.Mesh) -> Indices:
