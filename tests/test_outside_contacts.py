@@ -9,27 +9,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from touching_bodies import CUBE, flat, scene
 
 import stiv
-from blend_fixtures.scenes.primitives import box, grid, triangulated
 from blend_fixtures.scenes.shape import joined
 from stiv.outside_contacts import touching_from_outside
-
-CUBE = triangulated(box(2))
-
-
-def scene(first: Any, second: Any) -> tuple[stiv.Surface, np.ndarray, np.ndarray]:
-    """Two bodies, and the flags of the vertices of the first one."""
-    whole = joined([first, second])
-    owner = np.repeat([0, 1], [len(first.vertices), len(second.vertices)])
-    bodies = [stiv.Body("first", "rigid"), stiv.Body("second", "fixed")]
-    surface = stiv.Surface(whole.triangles(), len(owner), vertex_body=owner, bodies=bodies)
-    return surface, whole.vertices.astype(np.float32).astype(float), owner == 0
-
-
-def flat(size: float, *place: float) -> Any:
-    """A square of this width, whose normal points up."""
-    return triangulated(grid(3, 3, size, size)).moved(place)
 
 
 def touch_from_outside(first: Any, second: Any) -> bool:

@@ -9,24 +9,15 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from touching_bodies import CUBE, flat, scene
 
 import stiv
-from blend_fixtures.scenes.primitives import box, grid, icosphere, triangulated
+from blend_fixtures.scenes.primitives import box, icosphere, triangulated
 from blend_fixtures.scenes.shape import joined, rotation_matrix
 from stiv.touching import are_touching, find_parting, rounding_of
 
 GAP = 2e-6
-CUBE = triangulated(box(2))
 SEEDS = st.integers(0, 2**32 - 1)
-
-
-def scene(moving: Any, *others: Any) -> tuple[stiv.Surface, np.ndarray, np.ndarray]:
-    """A body that moves, and others that do not, with coordinates in single precision."""
-    whole = joined([moving, *others])
-    owner = np.repeat(range(1 + len(others)), [len(each.vertices) for each in (moving, *others)])
-    bodies = [stiv.Body("moving", "rigid"), *(stiv.Body(f"rest {k}", "fixed") for k in range(len(others)))]
-    surface = stiv.Surface(whole.triangles(), len(whole.vertices), vertex_body=owner, bodies=bodies)
-    return surface, whole.vertices.astype(np.float32).astype(float), owner == 0
 
 
 def parting(moving: Any, *others: Any, **options: Any) -> np.ndarray | None:
@@ -37,11 +28,6 @@ def parting(moving: Any, *others: Any, **options: Any) -> np.ndarray | None:
     if found is not None:
         assert len(stiv.find_intersections(q + np.where(moves[:, None], found, 0.0), surface)) == 0
     return found
-
-
-def flat(size: float, *place: float) -> Any:
-    """A square of this width, whose normal points up."""
-    return triangulated(grid(3, 3, size, size)).moved(place)
 
 
 FLOOR = flat(20, 0, 0, 0)

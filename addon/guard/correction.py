@@ -35,6 +35,11 @@ class Outcome:
     wrote: bool = False
     text: str = ""
 
+    @property
+    def cutting(self) -> stiv_blender.FacePairs:
+        """The pairs without those of objects that only touch."""
+        return stiv_blender.FacePairs.of(self.pairs).cutting()
+
 
 def evaluate_strokes(context: bpy.types.Context) -> None:
     """Evaluate sculpt strokes, which Blender only draws until something else needs the mesh."""
@@ -57,7 +62,7 @@ def correct_steps(context: bpy.types.Context, accepted: stiv_blender.AcceptedSce
         guarded = yield from stiv_blender.guard_result_steps(context, settings, accepted)
     except ValueError as error:
         return Outcome(reason=message_text(error), failed=True)
-    cutting = stiv_blender.KnownIntersections(guarded.pairs).cutting
+    cutting = stiv_blender.FacePairs.of(guarded.pairs).cutting()
     reason = message_text(guarded.reason) if cutting else ""
     if cutting and guarded.deformers:
         reason = _naming(translate("{} cannot be corrected"), guarded.deformers)

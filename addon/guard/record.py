@@ -65,8 +65,7 @@ class Record:
         """The rest of uncorrected results in an outcome; None if nothing is."""
         if outcome.failed:
             return Problem(reason=outcome.reason)
-        cutting = stiv_blender.KnownIntersections(outcome.pairs).cutting
-        left = tuple(pair for pair in cutting if stiv_blender.object_pair(pair) in self.uncorrected)
+        left = tuple(pair for pair in outcome.cutting if stiv_blender.object_pair(pair) in self.uncorrected)
         if not left:
             return None
         earlier = self.problem.reason if self.problem is not None and not self.problem.known else ""
@@ -74,8 +73,7 @@ class Record:
 
     def _problem(self, outcome: Outcome) -> Problem | None:
         left = self.uncorrected_of(outcome)
-        cutting = stiv_blender.KnownIntersections(outcome.pairs).cutting
-        return left or (Problem(cutting, known=True) if cutting else None)
+        return left or (Problem(outcome.cutting, known=True) if outcome.cutting else None)
 
 
 def objects_of(pairs: Sequence[stiv_blender.FacePair]) -> Pairs:

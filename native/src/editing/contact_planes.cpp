@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "acceptance/intersection/near_pairs.hpp"
+#include "editing/flush_triangles.hpp"
 
 namespace stiv {
 
@@ -17,17 +18,6 @@ namespace {
 constexpr std::size_t most_pairs = 100'000;        // of all contacts
 constexpr std::size_t most_pairs_of_two = 10'000;  // of one contact
 constexpr std::size_t most_planes = 64;            // of two parts: a curved contact has one for each triangle
-constexpr double least_cosine = 0.9;               // of two triangles that lie on each other: small ones are tilted
-
-Vector3 corner_of(const Triangles& triangles, Index triangle, int k, const PositionsView& q) {
-  return q.row(triangles(triangle, k));
-}
-
-/// Twice the area long.
-Vector3 normal_of(const Triangles& triangles, Index triangle, const PositionsView& q) {
-  const Vector3 corner = corner_of(triangles, triangle, 0, q);
-  return (corner_of(triangles, triangle, 1, q) - corner).cross(corner_of(triangles, triangle, 2, q) - corner);
-}
 
 /// A plane in which triangles of two parts lie on each other.
 struct Plane {
@@ -35,22 +25,22 @@ struct Plane {
   double tolerance;
 
   bool contains(const Triangles& triangles, Index triangle, const PositionsView& q) const {
-    for (int k = 0; k < 3; ++k)
-      if (!(std::abs(normal.dot(corner_of(triangles, triangle, k, q) - point)) <= tolerance)) return false;
-    return true;
+    const Corners corners = corners_of(triangles, triangle, q);
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const Vector3& corner) { return std::abs(normal.dot(corner - point)) <= tolerance; });
   }
 };
 
 /// The plane of the larger one of two triangles, if they lie on each other.
 std::optional<Plane> common_plane(const Triangles& triangles, Index a, Index b, const PositionsView& q,
                                   double tolerance) {
-  Vector3 first = normal_of(triangles, a, q), second = normal_of(triangles, b, q);
+  Vector3 first = area_normal_of(corners_of(triangles, a, q)), second = area_normal_of(corners_of(triangles, b, q));
   if (first.norm() < second.norm()) {
     std::swap(a, b);
     std::swap(first, second);
   }
-  const Plane plane{corner_of(triangles, a, 0, q), first.normalized(), tolerance};
-  const bool faces = std::abs(plane.normal.dot(second)) >= least_cosine * second.norm();
+  const Plane plane{q.row(triangles(a, 0)), first.normalized(), tolerance};
+  const bool faces = std::abs(plane.normal.dot(second)) >= least_flush_cosine * second.norm();
   return faces && plane.contains(triangles, b, q) ? std::optional(plane) : std::nullopt;
 }
 

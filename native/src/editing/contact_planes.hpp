@@ -13,8 +13,7 @@ namespace stiv {
 /// or turns on the other. Both are sorted, with the smaller index first.
 struct PairsInContactPlanes {
   IndexPairs facing;  ///< in one plane
-  IndexPairs
-      beside;  ///< one of the two lies in the plane of contact, the other one shares a corner with one in that plane
+  IndexPairs beside;  ///< one in that plane, the other one only beside triangles of its part in that plane
 };
 
 /// Finds these pairs around those that lie on each other: across the coplanar neighbors of both triangles. A large

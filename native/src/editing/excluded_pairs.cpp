@@ -5,6 +5,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -130,17 +131,15 @@ ExcludedPairs::ExcludedPairs(std::shared_ptr<const Surface> surface, const Given
   pairs_ = pairs;
   const IndexPairs contacts = contacts_of(given, start, execution);
   rounding_ = rounding_of(contacts, start);
+  std::optional<SurfaceParts> parts;
   if (!contacts.empty() || (!given.parts_may_cut && !shallow_.empty())) {
-    const SurfaceParts parts(*surface_);
-    if (!given.parts_may_cut) take_flush(parts, start);
-    take_contacts(contacts, parts, start);
-    if (!flush_.empty()) {
-      list_triangles_around_vertices();
-      take_contact_planes(given, parts, start);
-    }
+    parts.emplace(*surface_);
+    if (!given.parts_may_cut) take_flush(*parts, start);
+    take_contacts(contacts, *parts, start);
   }
   if (pairs_.empty() && flush_.empty()) return;
-  if (around_.empty()) list_triangles_around_vertices();
+  list_triangles_around_vertices();
+  if (!flush_.empty()) take_contact_planes(given, *parts, start);
   add_touching(start);
   find_others_that_touch(start, execution);
 }
@@ -218,7 +217,7 @@ void ExcludedPairs::take_contact_planes(const Given& given, const SurfaceParts& 
   IndexPairs sliding;
   std::copy_if(flush_.begin(), flush_.end(), std::back_inserter(sliding), [&](const auto& pair) {
     const auto body = [&](Index triangle) { return surface_->body_of(surface_->triangles()(triangle, 0)); };
-    return given.separation && given.separation(body(pair.first), body(pair.second)) <= rounding();
+    return given.separation(body(pair.first), body(pair.second)) <= rounding();
   });
   PairsInContactPlanes found = find_in_contact_planes(*surface_, parts, sliding, around_, start, rounding());
   const auto is_excluded = [&](const auto& pair) { return is_among(pairs_, pair.first, pair.second); };

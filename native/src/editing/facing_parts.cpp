@@ -5,31 +5,19 @@
 #include <array>
 #include <cmath>
 
+#include "editing/flush_triangles.hpp"
 #include "penetration/winding_numbers.hpp"
 
 namespace stiv {
 
 namespace {
 
-using Corners = std::array<Vector3, 3>;
 using Polygon = std::vector<Vector3>;
 
 constexpr double same_direction = 0.999;  // least cosine
-constexpr double least_cosine = 0.9;      // of two triangles that lie on each other: small ones are tilted by rounding
 
 std::array<Index, 3> vertices_of(const Triangles& triangles, Index triangle) {
   return {triangles(triangle, 0), triangles(triangle, 1), triangles(triangle, 2)};
-}
-
-Corners corners_of(const Triangles& triangles, Index triangle, const PositionsView& q) {
-  Corners corners;
-  for (int k = 0; k < 3; ++k) corners[at(k)] = q.row(triangles(triangle, k));
-  return corners;
-}
-
-/// Unit, or zero for a triangle without area.
-Vector3 normal_of(const Corners& corners) {
-  return (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
 }
 
 /// The part of a polygon in front of a plane through a point.
@@ -116,7 +104,7 @@ std::optional<FacingParts::Facing> FacingParts::facing_of(Index face, Index base
   const Corners on_face = corners_of(triangles_, face, start), on_base = corners_of(triangles_, base, start);
   const Vector3 normal = normal_of(on_base);
   const double cosine = normal.dot(normal_of(on_face));
-  if (std::abs(cosine) < least_cosine) return std::nullopt;
+  if (std::abs(cosine) < least_flush_cosine) return std::nullopt;
   if (touch) {
     const auto middle = centroid_of(over(on_face, on_base, normal), rounding_);
     if (!middle || std::abs(normal.dot(*middle - on_base[0])) > 2 * rounding_) return std::nullopt;

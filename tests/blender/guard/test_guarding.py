@@ -8,8 +8,9 @@ import bpy
 import numpy as np
 import pytest
 from building import CUBE, add_cube, edit_mode, evaluated, select
+from guarded_changes import guarded
 
-from stiv.blender import AcceptedScene, EditSettings, check_scene, find_intersections, guard_result
+from stiv.blender import check_scene
 from stiv.blender.guard import free_place
 
 WALL = 3.0  # where its face is, along x
@@ -17,15 +18,6 @@ WALL = 3.0  # where its face is, along x
 
 def add_wall() -> Any:
     return add_cube("Wall", (WALL + 0.5, 0, 0), 1.0, scale=(0.5, 4, 4))
-
-
-def guarded(change: Any, **settings: Any) -> Any:
-    """Read the scene, change it, guard the result."""
-    chosen = EditSettings(**settings)
-    accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, chosen))
-    change()
-    bpy.context.view_layer.update()
-    return guard_result(bpy.context, chosen, accepted)
 
 
 def pairs() -> set[tuple[str, str]]:

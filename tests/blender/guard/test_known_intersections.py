@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The live guard where objects touch: a crate on the floor is guarded against it, and what only touches may stay."""
+"""The live guard where objects touch: a crate on the floor is guarded against it, and may stay in contact."""
 
 from functools import partial
 from itertools import combinations
@@ -9,9 +9,10 @@ import bpy
 import numpy as np
 import pytest
 from building import add_cube, add_grid, evaluated
+from guarded_changes import guarded
 from mathutils import Vector
 
-from stiv.blender import AcceptedScene, EditSettings, find_intersections, guard_result
+from stiv.blender import EditSettings, find_intersections
 from stiv.blender.scene import obstacle_choice
 
 DEEPEST = 1e-5  # rounding of these coordinates
@@ -23,15 +24,6 @@ def crate_on_the_floor() -> Any:
     add_grid("Floor", 8, 6)
     add_cube("Wall", (3.5, 0, 3), 1.0, scale=(0.5, 4, 2))
     return add_cube("Crate", (0, 0, 1))
-
-
-def guarded(change: Any) -> Any:
-    """Read the scene, change it, guard the result."""
-    settings = EditSettings()
-    accepted = AcceptedScene.read(bpy.context, find_intersections(bpy.context, settings))
-    change()
-    bpy.context.view_layer.update()
-    return guard_result(bpy.context, settings, accepted)
 
 
 def cutting() -> Pairs:

@@ -35,7 +35,7 @@ from stiv.blender.edit.solver import EditSolver
 from stiv.blender.edit.standstill import objects_in_contact
 from stiv.blender.edit.state_writer import StateWriter, TakenState, WriteReport
 from stiv.blender.edit.summary import Summary, summarise
-from stiv.blender.edit.touching_start import Parting, start_clear_steps
+from stiv.blender.edit.touching_start import PartedStart, Parting, start_clear_steps
 from stiv.blender.edit.typed_values import apply_increments
 from stiv.blender.scene.arrays import Floats
 from stiv.blender.scene.assembly import Assembly
@@ -46,7 +46,7 @@ from stiv.blender.scene.static_reading import forget_static_meshes
 from stiv.blender.settings import EditSettings, check_kind
 from stiv.task import Steps, run
 
-Start = Callable[[Callable[..., Steps[EditSnapshot]]], Steps[tuple[EditSnapshot, EditSolver, Parting | None]]]
+Start = Callable[[Callable[..., Steps[EditSnapshot]]], Steps[PartedStart]]
 
 
 def obstacles_beside(

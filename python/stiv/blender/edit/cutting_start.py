@@ -10,14 +10,14 @@ from collections.abc import Callable
 from functools import partial
 
 from stiv.blender.edit.snapshot import EditSnapshot, Names
-from stiv.blender.edit.solver import EditSolver, SelectionCutsItselfError
-from stiv.blender.edit.touching_start import Parting, start_apart_steps
+from stiv.blender.edit.solver import SelectionCutsItselfError
+from stiv.blender.edit.touching_start import PartedStart, start_apart_steps
 from stiv.task import Steps
 
 
 def start_as_one_steps(
     read: Callable[[frozenset[Names]], Steps[EditSnapshot]],
-) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
+) -> Steps[PartedStart]:
     """Steps that read the scene and start a solver, with selected objects that cut each other as one.
 
     read: makes steps that read the scene, from pairs of names of objects that cut each other. Raise InputError and

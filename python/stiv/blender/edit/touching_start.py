@@ -40,6 +40,7 @@ TOUCHING = 0.4  # of the gap: less than edits keep; so near are only objects tha
 MOST_NEAR = 8  # pairs of objects in contact that are sought
 
 Started = tuple[EditSnapshot, EditSolver]
+PartedStart = tuple[EditSnapshot, EditSolver, "Parting | None"]
 Pairs = tuple[tuple[str, str], ...]
 
 
@@ -60,14 +61,14 @@ class Parting:
 
 def start_clear_steps(
     read: Callable[[], Steps[EditSnapshot]],
-) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
+) -> Steps[PartedStart]:
     """Steps that read the scene and start a solver. They refuse objects that touch others."""
     return *(yield from start_steps(read())), None
 
 
 def start_apart_steps(
     read: Callable[[], Steps[EditSnapshot]],
-) -> Steps[tuple[EditSnapshot, EditSolver, Parting | None]]:
+) -> Steps[PartedStart]:
     """Steps that read the scene and start a solver, after parting moving objects that only touch others.
 
     read: makes steps that read the scene. Raise InputError and StartIntersectsError, with nothing changed.

@@ -108,10 +108,7 @@ def correct_after_tool_steps(
     try:
         _restore(context, accepted, chosen)
         outcomes = yield from _passes(context, settings, wanted, names, end, touching)
-        is_free = all(outcome.reached for outcome in outcomes) and _is_tool_result_free(
-            context, wanted, chosen, outcomes
-        )
-        if is_free or (yield from _only_touches(context, settings, wanted, chosen, outcomes, touching)):
+        if (yield from _keep_tool_result(context, settings, wanted, chosen, outcomes, touching)):
             return ToolCorrection(False, names, deformers=deformers, notes=_notes_of(outcomes))
     except Left:
         raise
@@ -223,19 +220,7 @@ def _restore(context: bpy.types.Context, state: SceneState, changes: Sequence[Ch
     context.view_layer.update()
 
 
-def _is_tool_result_free(
-    context: bpy.types.Context, wanted: SceneState, changes: Sequence[Change], outcomes: Sequence[Outcome]
-) -> bool:
-    """Restore the tool's own result exactly and test it; if the test fails, write the solved state again."""
-    solved = read_state(context)
-    _restore(context, wanted, changes)
-    if not outcomes or outcomes[-1].edit.is_shown():
-        return True
-    _restore(context, solved, changes)
-    return False
-
-
-def _only_touches(
+def _keep_tool_result(
     context: bpy.types.Context,
     settings: EditSettings,
     wanted: SceneState,
@@ -243,14 +228,18 @@ def _only_touches(
     outcomes: Sequence[Outcome],
     touching: Collection[ObjectPair],
 ) -> Steps[bool]:
-    """Steps that restore the tool's own result if it is near, and those objects only touch there that did before.
+    """Steps that restore the tool's own result exactly if it is reached and free, or near and in contact.
 
-    An edit slides along a surface some roundings above it; the tool's result lies in its plane.
+    In contact, only objects touch that did before: an edit slides along a surface some roundings above it, and the
+    tool's result lies in its plane. Otherwise the scene shows the solved state again, and they return False.
     """
     if not all(outcome.near for outcome in outcomes):
         return False
-    solved, moving = read_state(context), {name for outcome in outcomes for name in outcome.edit.moving}
+    solved = read_state(context)
     _restore(context, wanted, changes)
+    if not outcomes or (all(outcome.reached for outcome in outcomes) and outcomes[-1].edit.is_shown()):
+        return True
+    moving = {name for outcome in outcomes for name in outcome.edit.moving}
     found = yield from find_intersections_steps(context, settings, moving)
     if found.touching.intersection(touching).issuperset(found.by_objects()):
         return True

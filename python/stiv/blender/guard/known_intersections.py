@@ -12,7 +12,7 @@ import numpy as np
 
 from stiv.blender.scene.arrays import Indices
 from stiv.blender.scene.assembly import Assembly, assemble_with_seams
-from stiv.blender.scene.elements import Element, FacePair, FacePairs
+from stiv.blender.scene.elements import FacePair, FacePairs, objects_of
 from stiv.blender.scene.exclusions import without_excluded
 from stiv.blender.scene.guarded_evaluations import read_guarded_scene
 from stiv.blender.settings import EditSettings
@@ -80,12 +80,6 @@ def object_pair(pair: FacePair) -> ObjectPair:
     return objects_of(pair.first, pair.second)
 
 
-def objects_of(first: Element, second: Element) -> ObjectPair:
-    """The objects of two elements."""
-    a, b = sorted((first.object, second.object))
-    return a, b
-
-
 @dataclass(frozen=True)
 class KnownIntersections:
     """Pairs of elements that intersect in the accepted state.
@@ -102,14 +96,9 @@ class KnownIntersections:
         return frozenset(FacePairs.of(self.pairs).by_objects())
 
     @cached_property
-    def cutting(self) -> FacePairs:
-        """The pairs of elements without those of objects that only touch."""
-        return FacePairs.of(self.pairs).cutting()
-
-    @cached_property
     def cutting_objects(self) -> frozenset[ObjectPair]:
         """The pairs of objects that cut each other, or themselves."""
-        return frozenset(self.cutting.by_objects())
+        return frozenset(FacePairs.of(self.pairs).cutting().by_objects())
 
     def touching(self, copies: Mapping[str, str] | None = None) -> frozenset[ObjectPair]:
         """The pairs of objects that only touch. copies: see `left_out`."""

@@ -145,7 +145,7 @@ class FacePairs(Sequence[FacePair]):
         """The pairs without those of objects that only touch."""
 
         def cut(first: Element, second: Element) -> bool:
-            return tuple(sorted((first.object, second.object))) not in self.touching
+            return objects_of(first, second) not in self.touching
 
         return self.chosen(self.where(cut)) if self.touching else self
 
@@ -160,8 +160,7 @@ class FacePairs(Sequence[FacePair]):
         names: dict[tuple[str, str], int] = {}
         groups = np.empty(len(owners), np.int64)
         for number, (first, second) in enumerate(owners):
-            a, b = sorted((first.object, second.object))
-            groups[number] = names.setdefault((a, b), len(names))
+            groups[number] = names.setdefault(objects_of(first, second), len(names))
         rows = split_by_number(groups[numbers])
         return {both: self.chosen(own) for both, own in zip(names, rows, strict=False)}
 
@@ -181,6 +180,12 @@ class FacePairs(Sequence[FacePair]):
         numbers = np.split((codes & 0xFFFFFFFF).astype(np.int32), firsts[1:])
         owned = zip(present.tolist(), numbers, strict=False)
         return [(self.owners[k], own) for k, own in owned if self.owners[k].kind == "face"]
+
+
+def objects_of(first: Element, second: Element) -> tuple[str, str]:
+    """The objects of two elements, ascending."""
+    a, b = sorted((first.object, second.object))
+    return a, b
 
 
 def sides_of(first: Element, second: Element) -> frozenset[str]:
